@@ -1,0 +1,126 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "ensonify/config/library.hpp"
+#include "ensonify/config/reader.hpp"
+#include "ensonify/sensor_models/beam_table.hpp"
+#include "ensonify/sensor_models/sonar_model.hpp"
+
+namespace ensonify {
+namespace {
+
+constexpr int max_beams = 4096;
+constexpr int max_bins = 16384;
+constexpr Limits fan_width_deg{0.01, 179.0};
+
+Shading read_shading(Reader& reader, std::string_view key) {
+  static const std::map<std::string, Shading> names{{"uniform", Shading::uniform},
+                                                    {"hann", Shading::hann},
+                                                    {"hamming", Shading::hamming},
+                                                    {"gaussian", Shading::gaussian},
+                                                    {"box", Shading::box}};
+  std::vector<std::string> choices;
+  for (const auto& [name, value] : names) choices.push_back(name);
+  return names.at(reader.choice(key, choices));
+}
+
+std::vector<double> read_beams(Reader beams) {
+  const std::string spacing = beams.choice("spacing", {"uniform_angle", "uniform_sine", "listed"});
+  std::vector<double> azimuth;
+  if (spacing == "listed") {
+    azimuth = beams.numbers("azimuth_deg", -1, {-89.5, 89.5});
+    if (azimuth.empty()) beams.fail("azimuth_deg", "an instrument needs at least one beam; list its azimuths");
+    if (azimuth.size() > max_beams) beams.fail("azimuth_deg", fmt::format("at most {} beams", max_beams));
+    std::transform(azimuth.begin(), azimuth.end(), azimuth.begin(), radians);
+    if (azimuth.size() > 1 && azimuth.front() < azimuth.back()) std::reverse(azimuth.begin(), azimuth.end());
+    if (!std::is_sorted(azimuth.rbegin(), azimuth.rend()) ||
+        std::adjacent_find(azimuth.begin(), azimuth.end()) != azimuth.end()) {
+      beams.fail("azimuth_deg", "must rise or fall strictly");
+    }
+  } else {
+    const int count = beams.integer("count", 1, max_beams);
+    const double fov = beams.angle_deg("azimuth_fov_deg", fan_width_deg);
+    azimuth = spacing == "uniform_sine" ? uniform_sine_beams(count, fov) : uniform_angle_beams(count, fov);
+  }
+  beams.finish();
+  return azimuth;
+}
+
+void read_range(Reader range, const RangeWindow& window, SonarModel& sonar) {
+  sonar.instrument_range_min_m = range.number("min_m", positive);
+  sonar.instrument_range_max_m = range.number("max_m", {sonar.instrument_range_min_m, 1000.0});
+  sonar.native_bin_m = range.number("native_bin_m", {1e-4, 1.0});
+  const double default_max_m = range.number_or("default_max_m", sonar.instrument_range_max_m, positive);
+  const int default_bins = range.integer_or("default_bins", 0, 0, max_bins);
+  range.finish();
+
+  SonarGeometry& g = sonar.geometry;
+  g.range_min_m = window.range_min_m.value_or(sonar.instrument_range_min_m);
+  g.range_max_m = window.range_max_m.value_or(default_max_m);
+  if (g.range_min_m < sonar.instrument_range_min_m || g.range_max_m > sonar.instrument_range_max_m ||
+      !(g.range_min_m < g.range_max_m)) {
+    range.fail("", fmt::format("the range window {} to {} m must lie within the instrument's {} to {} m",
+                               g.range_min_m, g.range_max_m, sonar.instrument_range_min_m,
+                               sonar.instrument_range_max_m));
+  }
+  g.range_bins = window.range_bins.value_or(default_bins);
+  if (g.range_bins == 0) {
+    g.range_bins = static_cast<int>((g.range_max_m - g.range_min_m) / sonar.native_bin_m + 1e-9);
+    g.range_max_m = g.range_min_m + g.range_bins * sonar.native_bin_m;
+  }
+  if (g.range_bins < 1 || g.range_bins > max_bins) {
+    range.fail("", fmt::format("the range window gives {} bins; it must be 1 to {}", g.range_bins, max_bins));
+  }
+}
+
+void read_pattern(Reader pattern, SonarModel& sonar) {
+  sonar.receive_azimuth =
+      Aperture(read_shading(pattern, "azimuth_shading"), pattern.angle_deg("azimuth_width_deg", fan_width_deg));
+  sonar.geometry.elevation_fov_rad = pattern.angle_deg("elevation_fov_deg", {0.01, 120.0});
+  sonar.elevation = Aperture(read_shading(pattern, "elevation_shading"), sonar.geometry.elevation_fov_rad);
+  sonar.fan_edge_db = pattern.number_or("fan_edge_db", 0.0, {0.0, 60.0});
+  pattern.finish();
+}
+
+ReceiveChain read_receive(Reader receive) {
+  ReceiveChain chain;
+  chain.tvg_spreading_db = receive.number("tvg_spreading_db", {0.0, 60.0});
+  chain.tvg_absorption_db_per_m = receive.number("tvg_absorption_db_per_m", {0.0, 10.0});
+  chain.saturation_level_db = receive.number("saturation_level_db", {0.0, 400.0});
+  chain.gamma = receive.number("gamma", {0.05, 4.0});
+  chain.bits = receive.integer_or("bits", 8, 8, 16);
+  if (chain.bits != 8 && chain.bits != 16) receive.fail("bits", "must be 8 or 16");
+  receive.finish();
+  return chain;
+}
+
+}  // namespace
+
+SonarModel load_sonar(const std::string& path_or_name, const RangeWindow& window) {
+  Reader file = Reader::from_file(resolve_name("sensor_models", path_or_name));
+  SonarModel sonar;
+  sonar.name = file.text("name");
+  sonar.title = file.text("title");
+  sonar.frequency_hz = file.number("frequency_hz", {1e4, 1e7});
+  sonar.bandwidth_hz = file.number("bandwidth_hz", {1e2, 5e6});
+  sonar.source_level_db = file.number("source_level_db", {100.0, 260.0});
+  sonar.ping_rate_hz = file.number("ping_rate_hz", {0.01, 1000.0});
+  sonar.geometry.beam_azimuth_rad = read_beams(file.child("beams"));
+  read_range(file.child("range"), window, sonar);
+  read_pattern(file.child("pattern"), sonar);
+  sonar.receive = read_receive(file.child("receive"));
+  if (file.has("rays")) {
+    Reader rays = file.child("rays");
+    sonar.rays.azimuth_rays_per_beam = rays.integer_or("azimuth_per_beam", 0, 0, 64);
+    sonar.rays.elevation_rays = rays.integer_or("elevation", 0, 0, 8192);
+    rays.finish();
+  }
+  if (file.has("unverified")) sonar.unverified = file.texts("unverified");
+  file.finish();
+  return sonar;
+}
+
+}  // namespace ensonify

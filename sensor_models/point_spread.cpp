@@ -71,14 +71,14 @@ Image2<float> PointSpread::apply(const Image2<float>& intensity) const {
   for (int bin = 0; bin < bins; ++bin) {
     float* line = padded.data() + reach();
     std::fill_n(line, beams, 0.0f);
-    float brightest = 0.0f;
     for (int k = std::max(-range_reach, -bin); k <= std::min(range_reach, bins - 1 - bin); ++k) {
       const auto in = intensity.row(bin + k);
       const float weight = range_weights_[static_cast<std::size_t>(k + range_reach)];
       for (int b = 0; b < beams; ++b) line[b] += weight * in[b];
     }
-    for (int b = 0; b < beams; ++b) brightest = std::max(brightest, line[b]);
-    if (brightest == 0.0f) continue;
+    bool echoes = false;
+    for (int b = 0; b < beams; ++b) echoes |= line[b] != 0.0f;
+    if (!echoes) continue;
     const auto out = result.row(bin);
     for (int d = 0; d < beam_weights_.rows(); ++d) {
       const auto weights = beam_weights_.row(d);

@@ -1,0 +1,125 @@
+#include "ensonify/noise/random_row.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+
+namespace ensonify {
+namespace {
+
+/// Natural logarithm for normal positive x, absolute error below 2e-7 |log x| + 1e-7 (polynomial of Cephes' logf).
+/// Own, so that neither the compiler nor the C library decides the last bit, and without branches, so that rows
+/// become vector code.
+inline float log_of(float x) {
+  const auto bits = std::bit_cast<std::uint32_t>(x);
+  // Mantissa in [sqrt(1/2), sqrt(2)).
+  const std::uint32_t shifted = bits - 0x3f3504f3u;
+  const auto exponent = static_cast<float>(static_cast<std::int32_t>(shifted) >> 23);
+  const float f = std::bit_cast<float>((shifted & 0x007fffffu) + 0x3f3504f3u) - 1.0f;
+  const float z = f * f;
+  float p = 7.0376836292e-2f;
+  p = p * f - 1.1514610310e-1f;
+  p = p * f + 1.1676998740e-1f;
+  p = p * f - 1.2420140846e-1f;
+  p = p * f + 1.4249322787e-1f;
+  p = p * f - 1.6668057665e-1f;
+  p = p * f + 2.0000714765e-1f;
+  p = p * f - 2.4999993993e-1f;
+  p = p * f + 3.3333331174e-1f;
+  const float tail = f * z * p - 2.12194440e-4f * exponent - 0.5f * z;
+  return f + tail + 0.693359375f * exponent;
+}
+
+inline float normal_inline(float u) {
+  // log((1 - x)(1 + x)) with x = 2u - 1, formed without cancellation near u = 0.
+  const float w = -log_of(4.0f * u * (1.0f - u));
+  const float a = w - 2.5f;
+  float centre = 2.81022636e-08f;
+  centre = 3.43273939e-07f + centre * a;
+  centre = -3.5233877e-06f + centre * a;
+  centre = -4.39150654e-06f + centre * a;
+  centre = 0.00021858087f + centre * a;
+  centre = -0.00125372503f + centre * a;
+  centre = -0.00417768164f + centre * a;
+  centre = 0.246640727f + centre * a;
+  centre = 1.50140941f + centre * a;
+  const float b = std::sqrt(std::max(w, 0.0f)) - 3.0f;
+  float tail = -0.000200214257f;
+  tail = 0.000100950558f + tail * b;
+  tail = 0.00134934322f + tail * b;
+  tail = -0.00367342844f + tail * b;
+  tail = 0.00573950773f + tail * b;
+  tail = -0.0076224613f + tail * b;
+  tail = 0.00943887047f + tail * b;
+  tail = 1.00167406f + tail * b;
+  tail = 2.83297682f + tail * b;
+  return 1.41421356f * (w < 5.0f ? centre : tail) * (2.0f * u - 1.0f);
+}
+
+inline float rayleigh_inline(float u) { return std::sqrt(std::max(-2.0f * log_of(u), 0.0f)); }
+
+constexpr int lanes = 16;
+
+/// Philox4x32-10 (Salmon et al. 2011) for `lanes` consecutive values of the first counter word.
+inline void philox_lanes(RandomKey key, std::uint32_t first, std::uint32_t row, std::uint32_t* out) {
+  std::array<std::uint32_t, lanes> c0, c1, c2, c3;
+  for (int l = 0; l < lanes; ++l) {
+    c0[l] = first + static_cast<std::uint32_t>(l);
+    c1[l] = row;
+    c2[l] = 0;
+    c3[l] = 0;
+  }
+  std::uint32_t k0 = key.word0;
+  std::uint32_t k1 = key.word1;
+  for (int round = 0; round < 10; ++round) {
+    for (int l = 0; l < lanes; ++l) {
+      const std::uint64_t p0 = std::uint64_t{0xD2511F53u} * c0[l];
+      const std::uint64_t p1 = std::uint64_t{0xCD9E8D57u} * c2[l];
+      const auto n0 = static_cast<std::uint32_t>(p1 >> 32) ^ c1[l] ^ k0;
+      const auto n2 = static_cast<std::uint32_t>(p0 >> 32) ^ c3[l] ^ k1;
+      c1[l] = static_cast<std::uint32_t>(p1);
+      c3[l] = static_cast<std::uint32_t>(p0);
+      c0[l] = n0;
+      c2[l] = n2;
+    }
+    k0 += 0x9E3779B9u;
+    k1 += 0xBB67AE85u;
+  }
+  for (int l = 0; l < lanes; ++l) {
+    out[4 * l] = c0[l];
+    out[4 * l + 1] = c1[l];
+    out[4 * l + 2] = c2[l];
+    out[4 * l + 3] = c3[l];
+  }
+}
+
+}  // namespace
+
+void fill_words(RandomKey key, std::uint32_t row, std::span<std::uint32_t> words) {
+  constexpr std::size_t chunk = 4 * lanes;
+  std::uint32_t block = 0;
+  std::size_t done = 0;
+  for (; done + chunk <= words.size(); done += chunk, block += lanes) {
+    philox_lanes(key, block, row, words.data() + done);
+  }
+  if (done < words.size()) {
+    std::array<std::uint32_t, chunk> rest;
+    philox_lanes(key, block, row, rest.data());
+    std::copy_n(rest.begin(), words.size() - done, words.begin() + static_cast<std::ptrdiff_t>(done));
+  }
+}
+
+float normal_of(float uniform) { return normal_inline(uniform); }
+float rayleigh_of(float uniform) { return rayleigh_inline(uniform); }
+
+void to_normal(std::span<float> uniforms) {
+  for (float& u : uniforms) u = normal_inline(u);
+}
+
+void to_rayleigh(std::span<float> uniforms) {
+  for (float& u : uniforms) u = rayleigh_inline(u);
+}
+
+}  // namespace ensonify

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+
+#include "ensonify/core/random.hpp"
+
+namespace ensonify {
+
+/// Fills a row with numbers addressed by (key, row, position): position p holds word p % 4 of random_words(key, p / 4,
+/// row). The same bits as one call a pixel, made eight blocks at a time.
+void fill_words(RandomKey key, std::uint32_t row, std::span<std::uint32_t> words);
+
+/// Uniform in (0, 1), 24 bits.
+inline float uniform_of(std::uint32_t word) { return (static_cast<float>(word >> 8) + 0.5f) * 0x1p-24f; }
+
+/// Standard normal by inversion: erfinv of M. Giles (2010, single precision), relative error about 1e-6.
+float normal_of(float uniform);
+/// Rayleigh of scale 1 by inversion.
+float rayleigh_of(float uniform);
+
+/// The same for whole rows, in place.
+void to_normal(std::span<float> uniforms);
+void to_rayleigh(std::span<float> uniforms);
+
+}  // namespace ensonify

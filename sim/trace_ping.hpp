@@ -1,0 +1,38 @@
+#pragma once
+
+#include "ensonify/core/echo.hpp"
+#include "ensonify/sim/ray_fan.hpp"
+#include "ensonify/sim/ray_scene.hpp"
+
+namespace ensonify {
+
+struct Ping {
+  Echo echo;
+  PingTruth truth;
+};
+
+/// Casts one ping: mean echo intensity of the direct path, before the point spread, and the truth of the same rays.
+///
+/// A cell of the fan of solid angle dOmega that meets a surface at range r and incidence i adds (Urick 1983, sonar
+/// equation, with dA = r^2 dOmega / cos i)
+///     B_tx B_rx sigma(i) / cos(i) dOmega  r^-2 10^(-2 alpha r / 10)
+/// spread over the ranges that its footprint covers: on the tangent plane of the hit, not beyond the neighbouring
+/// rays' hits, and falling as r^-3 as a Lambert plane does. So a plane's echo does not depend on the ray count.
+class PingTracer {
+ public:
+  /// The scene must outlive the tracer.
+  PingTracer(const RayScene& scene, const SonarModel& sonar, const Water& water);
+
+  /// `cell_truth`: also fill the images of elevation, incidence and instance in the truth.
+  Ping trace(const Pose& T_world_sonar, bool cell_truth = false) const;
+
+  const RayFan& fan() const { return fan_; }
+
+ private:
+  const RayScene* scene_;
+  SonarGeometry geometry_;
+  RayFan fan_;
+  std::vector<float> row_loss_;  ///< r^-2 and absorption of every bin
+};
+
+}  // namespace ensonify

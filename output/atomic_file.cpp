@@ -1,0 +1,88 @@
+#include "ensonify/output/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+#include <string>
+
+#include "ensonify/core/error.hpp"
+
+namespace ensonify {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail(const fs::path& path, const char* what) {
+  throw DataError(fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
+}
+
+void write_bytes(const fs::path& path, const void* data, std::size_t size) {
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  if (file < 0) fail(path, "can not be written");
+  const char* next = static_cast<const char*>(data);
+  while (size > 0) {
+    const ssize_t written = ::write(file, next, size);
+    if (written < 0) {
+      if (errno == EINTR) continue;
+      const int error = errno;
+      ::close(file);
+      errno = error;
+      fail(path, "can not be written");
+    }
+    next += written;
+    size -= static_cast<std::size_t>(written);
+  }
+  if (::close(file) != 0) fail(path, "can not be written");
+}
+
+template <typename Bytes>
+Bytes read_bytes(const fs::path& path, std::size_t max_bytes) {
+  std::error_code error;
+  const auto size = fs::file_size(path, error);
+  if (error) throw DataError(fmt::format("{}: can not be read: {}", path.string(), error.message()));
+  if (size > max_bytes) throw DataError(fmt::format("{}: {} bytes is more than the {} allowed", path.string(), size, max_bytes));
+  Bytes bytes(size, {});
+  std::ifstream in(path, std::ios::binary);
+  in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
+  if (!in && size > 0) throw DataError(fmt::format("{}: can not be read", path.string()));
+  return bytes;
+}
+
+}  // namespace
+
+void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
+  std::error_code error;
+  if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
+  if (error) throw DataError(fmt::format("{}: folder can not be made: {}", path.parent_path().string(), error.message()));
+  const fs::path temporary = path.parent_path() / fmt::format(".{}.tmp-{}", path.filename().string(), ::getpid());
+  try {
+    write(temporary);
+    fs::rename(temporary, path);
+  } catch (const fs::filesystem_error& e) {
+    fs::remove(temporary, error);
+    throw DataError(fmt::format("{}: can not be written: {}", path.string(), e.code().message()));
+  } catch (...) {
+    fs::remove(temporary, error);
+    throw;
+  }
+}
+
+void write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
+  write_atomically(path, [&](const fs::path& temporary) { write_bytes(temporary, bytes.data(), bytes.size()); });
+}
+
+void write_file(const fs::path& path, std::string_view text) {
+  write_atomically(path, [&](const fs::path& temporary) { write_bytes(temporary, text.data(), text.size()); });
+}
+
+std::vector<std::uint8_t> read_file(const fs::path& path, std::size_t max_bytes) {
+  return read_bytes<std::vector<std::uint8_t>>(path, max_bytes);
+}
+
+std::string read_text(const fs::path& path, std::size_t max_bytes) { return read_bytes<std::string>(path, max_bytes); }
+
+}  // namespace ensonify

@@ -1,0 +1,115 @@
+#include "ensonify/output/png.hpp"
+
+#include <fmt/format.h>
+#include <libdeflate.h>
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstring>
+#include <memory>
+#include <opencv2/imgcodecs.hpp>
+#include <string_view>
+
+#include "ensonify/core/error.hpp"
+#include "ensonify/output/atomic_file.hpp"
+
+namespace ensonify {
+namespace {
+
+constexpr std::array<std::uint8_t, 8> signature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
+constexpr int fastest = 1;
+
+void put_u32(std::vector<std::uint8_t>& out, std::uint32_t value) {
+  for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
+}
+
+std::uint32_t get_u32(const std::uint8_t* bytes) {
+  return std::uint32_t{bytes[0]} << 24 | std::uint32_t{bytes[1]} << 16 | std::uint32_t{bytes[2]} << 8 | bytes[3];
+}
+
+/// Length, type, data, CRC of type and data (PNG specification 5.3).
+void put_chunk(std::vector<std::uint8_t>& out, std::string_view type, std::span<const std::uint8_t> data) {
+  put_u32(out, static_cast<std::uint32_t>(data.size()));
+  const std::size_t start = out.size();
+  out.insert(out.end(), type.begin(), type.end());
+  out.insert(out.end(), data.begin(), data.end());
+  put_u32(out, libdeflate_crc32(0, out.data() + start, out.size() - start));
+}
+
+std::vector<std::uint8_t> encode(std::span<const std::uint8_t> scanlines, int width, int height, int bits) {
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(fastest), libdeflate_free_compressor);
+  std::vector<std::uint8_t> packed(libdeflate_zlib_compress_bound(compressor.get(), scanlines.size()));
+  packed.resize(libdeflate_zlib_compress(compressor.get(), scanlines.data(), scanlines.size(), packed.data(),
+                                         packed.size()));
+  std::vector<std::uint8_t> header;
+  put_u32(header, static_cast<std::uint32_t>(width));
+  put_u32(header, static_cast<std::uint32_t>(height));
+  header.insert(header.end(), {static_cast<std::uint8_t>(bits), 0, 0, 0, 0});  // grey, deflate, no interlace
+
+  std::vector<std::uint8_t> png(signature.begin(), signature.end());
+  png.reserve(packed.size() + 64);
+  put_chunk(png, "IHDR", header);
+  put_chunk(png, "IDAT", packed);
+  put_chunk(png, "IEND", {});
+  return png;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> encode_png(const Image2<std::uint8_t>& image) {
+  std::vector<std::uint8_t> scanlines;
+  scanlines.reserve(image.size() + static_cast<std::size_t>(image.rows()));
+  for (int r = 0; r < image.rows(); ++r) {
+    scanlines.push_back(0);  // filter type: none
+    scanlines.insert(scanlines.end(), image.row(r).begin(), image.row(r).end());
+  }
+  return encode(scanlines, image.columns(), image.rows(), 8);
+}
+
+std::vector<std::uint8_t> encode_png(const Image2<std::uint16_t>& image) {
+  std::vector<std::uint8_t> scanlines;
+  scanlines.reserve(2 * image.size() + static_cast<std::size_t>(image.rows()));
+  for (int r = 0; r < image.rows(); ++r) {
+    scanlines.push_back(0);
+    for (const std::uint16_t v : image.row(r)) {
+      scanlines.push_back(static_cast<std::uint8_t>(v >> 8));
+      scanlines.push_back(static_cast<std::uint8_t>(v & 0xff));
+    }
+  }
+  return encode(scanlines, image.columns(), image.rows(), 16);
+}
+
+Image2<std::uint8_t> decode_png(std::span<const std::uint8_t> bytes, const std::filesystem::path& name) {
+  constexpr std::size_t header_bytes = 33;
+  if (bytes.size() < header_bytes || !std::equal(signature.begin(), signature.end(), bytes.begin())) {
+    throw DataError(fmt::format("{}: no PNG file", name.string()));
+  }
+  const std::uint64_t pixels = std::uint64_t{get_u32(bytes.data() + 16)} * get_u32(bytes.data() + 20);
+  if (pixels == 0 || pixels > (1u << 28)) throw DataError(fmt::format("{}: {} pixels", name.string(), pixels));
+  // libpng pads a truncated image with zeros and only warns; a whole file ends in IEND.
+  static constexpr std::array<std::uint8_t, 4> end_tag{'I', 'E', 'N', 'D'};
+  if (!std::equal(end_tag.begin(), end_tag.end(), bytes.end() - 8)) {
+    throw DataError(fmt::format("{}: the PNG file is cut short", name.string()));
+  }
+  cv::Mat decoded;
+  try {
+    decoded = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<std::uint8_t*>(bytes.data())),
+                           cv::IMREAD_UNCHANGED);
+  } catch (const cv::Exception& e) {
+    throw DataError(fmt::format("{}: broken PNG file: {}", name.string(), e.what()));
+  }
+  if (decoded.empty()) throw DataError(fmt::format("{}: broken PNG file", name.string()));
+  if (decoded.type() != CV_8UC1) {
+    throw DataError(fmt::format("{}: must be a greyscale PNG of 8 bits, not {} channels of {} bytes", name.string(),
+                                decoded.channels(), decoded.elemSize1()));
+  }
+  Image2<std::uint8_t> image(decoded.rows, decoded.cols);
+  for (int r = 0; r < decoded.rows; ++r) std::memcpy(image.row(r).data(), decoded.ptr(r), image.row(r).size());
+  return image;
+}
+
+Image2<std::uint8_t> read_png(const std::filesystem::path& path) { return decode_png(read_file(path), path); }
+
+}  // namespace ensonify

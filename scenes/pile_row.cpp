@@ -1,0 +1,29 @@
+#include "ensonify/scenes/pile_row.hpp"
+
+#include <cmath>
+#include <numbers>
+
+#include "ensonify/scenes/basic_shapes.hpp"
+
+namespace ensonify {
+
+Assembly build_pile_row(const PileRow& row, RandomKey key) {
+  Assembly result;
+  result.meshes.push_back(make_cylinder(1.0, 1.0));
+  for (int i = 0; i < row.piles; ++i) {
+    RandomSequence random(key.child(static_cast<std::uint64_t>(i)));
+    const double radius_m = sample(row.radius_m, random);
+    const double tilt_rad = radians(sample(row.tilt_deg, random));
+    const double azimuth_rad = random.uniform(0, 2 * std::numbers::pi);
+    const Vec3 head(i * row.spacing_m + sample(row.offset_m, random), sample(row.offset_m, random), 0);
+
+    const Vec3 tilt_axis(std::cos(azimuth_rad), std::sin(azimuth_rad), 0);
+    Eigen::Affine3d T = Eigen::Affine3d::Identity();
+    T.translate(head).rotate(Eigen::AngleAxisd(tilt_rad, tilt_axis));
+    T.translate(Vec3(0, 0, -0.5 * row.length_m)).scale(Vec3(radius_m, radius_m, row.length_m));
+    result.parts.push_back({0, T});
+  }
+  return result;
+}
+
+}  // namespace ensonify

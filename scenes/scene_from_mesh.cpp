@@ -1,0 +1,32 @@
+#include <algorithm>
+#include <cmath>
+
+#include "ensonify/scenes/material_library.hpp"
+#include "ensonify/scenes/mesh_import.hpp"
+#include "ensonify/scenes/mesh_measure.hpp"
+#include "ensonify/scenes/scene.hpp"
+
+namespace ensonify {
+
+Scene scene_from_mesh(const std::filesystem::path& mesh) {
+  Scene scene;
+  scene.name = mesh.stem().string();
+  scene.title = mesh.filename().string();
+  scene.meshes.push_back(import_mesh(mesh, {}, scene.warnings));
+  for (const Material& material : bundled_materials()) {
+    if (material.name == "steel_rusty") scene.materials.push_back(material);
+  }
+  if (scene.materials.empty()) scene.materials.emplace_back();
+  scene.instances.push_back({scene.name, 0, 0, Eigen::Affine3d::Identity(), true});
+
+  const Eigen::AlignedBox3d box = bounding_box_m(scene.meshes.front());
+  // At least a centimetre, so that a flat mesh has bounds too.
+  const Vec3 margin = (0.05 * box.sizes()).cwiseMax(0.01);
+  scene.bounds_m = Eigen::AlignedBox3d(box.min() - margin, box.max() + margin);
+  scene.navigable_m = scene.bounds_m;
+  constexpr double max_cells = 64e6;
+  scene.grid_resolution_m = std::max(0.05, std::cbrt(scene.bounds_m.volume() / (0.5 * max_cells)));
+  return scene;
+}
+
+}  // namespace ensonify

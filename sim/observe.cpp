@@ -1,0 +1,198 @@
+#include "ensonify/sim/observe.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "ensonify/core/error.hpp"
+#include "ensonify/core/parallel.hpp"
+
+namespace ensonify {
+namespace {
+
+/// The nominal field of view.
+struct Frustum {
+  double range_min_m, range_max_m;
+  double azimuth_min_rad, azimuth_max_rad;
+  double elevation_max_rad;
+  Eigen::AlignedBox3d box_sonar_m;  ///< holds it
+
+  bool holds_direction(double azimuth_rad, double elevation_rad) const {
+    return azimuth_rad >= azimuth_min_rad && azimuth_rad <= azimuth_max_rad &&
+           std::abs(elevation_rad) <= elevation_max_rad;
+  }
+};
+
+Frustum frustum_of(const SonarGeometry& g) {
+  const std::vector<double> edges = g.beam_edges_rad();
+  Frustum f{g.range_min_m, g.range_max_m, edges.back(), edges.front(), 0.5 * g.elevation_fov_rad, {}};
+  f.box_sonar_m.extend(Vec3::Zero());
+  const auto extend = [&](double azimuth) {
+    const Vec3 rim(std::cos(azimuth), std::sin(azimuth), 0);
+    f.box_sonar_m.extend(g.range_max_m * (rim + std::sin(f.elevation_max_rad) * Vec3::UnitZ()));
+    f.box_sonar_m.extend(g.range_max_m * (rim - std::sin(f.elevation_max_rad) * Vec3::UnitZ()));
+  };
+  extend(f.azimuth_min_rad);
+  extend(f.azimuth_max_rad);
+  for (int quarter = -2; quarter <= 2; ++quarter) {
+    const double axis = quarter * 0.5 * std::numbers::pi;
+    if (axis > f.azimuth_min_rad && axis < f.azimuth_max_rad) extend(axis);
+  }
+  return f;
+}
+
+/// The column of the ray nearest in azimuth, for descending azimuths at any spacing.
+class NearestColumn {
+ public:
+  explicit NearestColumn(const std::vector<float>& azimuth_rad)
+      : first_(azimuth_rad.front()), last_column_(static_cast<int>(azimuth_rad.size()) - 1) {
+    for (std::size_t i = 0; i + 1 < azimuth_rad.size(); ++i) {
+      border_.push_back(0.5 * (static_cast<double>(azimuth_rad[i]) + static_cast<double>(azimuth_rad[i + 1])));
+    }
+    const double width = first_ - static_cast<double>(azimuth_rad.back());
+    const std::size_t slots = 4 * azimuth_rad.size();
+    per_rad_ = width > 0 ? static_cast<double>(slots) / width : 0.0;
+    start_.resize(slots);
+    int column = 0;
+    for (std::size_t s = 0; s < slots; ++s) {
+      while (column < last_column_ && first_ - border_[column] < static_cast<double>(s) / per_rad_) ++column;
+      start_[s] = std::max(column - 1, 0);  // one early: rounding of the slot must not step over a column
+    }
+  }
+
+  int operator()(double azimuth_rad) const {
+    const double slot = std::clamp((first_ - azimuth_rad) * per_rad_, 0.0, static_cast<double>(start_.size() - 1));
+    int column = start_[static_cast<std::size_t>(slot)];
+    while (column < last_column_ && azimuth_rad < border_[column]) ++column;
+    return column;
+  }
+
+ private:
+  double first_;
+  int last_column_;
+  double per_rad_ = 0;
+  std::vector<double> border_;
+  std::vector<int> start_;
+};
+
+/// The row of the ray nearest in elevation, for ascending elevations in equal steps.
+struct NearestRow {
+  double first_rad, per_rad, last_row;
+  int operator()(double elevation_rad) const {
+    return static_cast<int>(std::clamp(std::round((elevation_rad - first_rad) * per_rad), 0.0, last_row));
+  }
+};
+
+NearestRow nearest_row(const std::vector<float>& elevation_rad) {
+  const double steps = static_cast<double>(elevation_rad.size()) - 1;
+  const double first = elevation_rad.front();
+  return {first, steps > 0 ? steps / (static_cast<double>(elevation_rad.back()) - first) : 0.0, steps};
+}
+
+/// Part [begin, end) of a row of cells whose centres start + step * i lie in the box.
+std::pair<int, int> clip_row(const Vec3& start, const Vec3& step, const Eigen::AlignedBox3d& box, int cells) {
+  double low = 0;
+  double high = cells - 1;
+  for (int a = 0; a < 3; ++a) {
+    if (std::abs(step[a]) < 1e-12) {
+      if (start[a] < box.min()[a] || start[a] > box.max()[a]) return {0, 0};
+      continue;
+    }
+    const auto [near, far] = std::minmax({(box.min()[a] - start[a]) / step[a], (box.max()[a] - start[a]) / step[a]});
+    low = std::max(low, near);
+    high = std::min(high, far);
+  }
+  if (!(low <= high)) return {0, 0};
+  return {static_cast<int>(std::floor(low)), std::min(static_cast<int>(std::ceil(high)) + 1, cells)};
+}
+
+void mark_free(const PingTruth& truth, const Frustum& frustum, const Pose& T_world_sonar, OccupancyGrid& grid) {
+  const GridFrame& frame = grid.frame;
+  Eigen::AlignedBox3d world;
+  for (int i = 0; i < 8; ++i) {
+    world.extend(T_world_sonar * frustum.box_sonar_m.corner(static_cast<Eigen::AlignedBox3d::CornerType>(i)));
+  }
+  const Vec3 low = ((world.min() - frame.origin_m) / frame.resolution_m).array().floor();
+  const Vec3 high = ((world.max() - frame.origin_m) / frame.resolution_m).array().ceil();
+  const auto clamp_cell = [&](double i, int axis) {
+    return static_cast<int>(std::clamp(i, 0.0, static_cast<double>(frame.size[axis])));
+  };
+  const int y_begin = clamp_cell(low.y(), 1);
+  const int y_end = clamp_cell(high.y(), 1);
+  const int z_begin = clamp_cell(low.z(), 2);
+  const int z_end = clamp_cell(high.z(), 2);
+
+  const Pose T_sonar_world = T_world_sonar.inverse();
+  const Vec3 step = T_sonar_world.linear().col(0) * frame.resolution_m;
+  const NearestRow row_of(nearest_row(truth.ray_elevation_rad));
+  const NearestColumn column_of(truth.ray_azimuth_rad);
+  const double range2_min = frustum.range_min_m * frustum.range_min_m;
+  const double range2_max = frustum.range_max_m * frustum.range_max_m;
+  const double sin2_elevation = std::pow(std::sin(std::min(frustum.elevation_max_rad, 0.5 * std::numbers::pi)), 2);
+
+  parallel_for(std::max(z_end - z_begin, 0), [&](int slab) {
+    const int z = z_begin + slab;
+    for (int y = y_begin; y < y_end; ++y) {
+      const Vec3 start = T_sonar_world * frame.centre_m(0, y, z);
+      const auto [begin, end] = clip_row(start, step, frustum.box_sonar_m, frame.size[0]);
+      const std::size_t row = frame.index(0, y, z);
+      for (int x = begin; x < end; ++x) {
+        if (grid.occupancy[row + static_cast<std::size_t>(x)] != static_cast<std::uint8_t>(Occupancy::free)) continue;
+        const Vec3 p = start + x * step;
+        const double range2 = p.squaredNorm();
+        if (range2 < range2_min || range2 > range2_max) continue;
+        if (p.z() * p.z() > sin2_elevation * range2 * (1 + 1e-9)) continue;  // cheap, before the arc tangents
+        const double azimuth = std::atan2(p.y(), p.x());
+        const double elevation = std::atan2(p.z(), std::sqrt(p.x() * p.x() + p.y() * p.y()));
+        if (!frustum.holds_direction(azimuth, elevation)) continue;
+        const double hit = truth.first_hit_range_m(row_of(elevation), column_of(azimuth));
+        if (range2 < hit * hit) grid.observable[row + static_cast<std::size_t>(x)] = 1;
+      }
+    }
+  });
+}
+
+void mark_hits(const PingTruth& truth, const Frustum& frustum, const Pose& T_world_sonar, OccupancyGrid& grid) {
+  std::vector<std::pair<double, double>> cos_sin_azimuth;
+  for (const double azimuth : truth.ray_azimuth_rad) cos_sin_azimuth.emplace_back(std::cos(azimuth), std::sin(azimuth));
+  for (int r = 0; r < truth.first_hit_range_m.rows(); ++r) {
+    const double elevation = truth.ray_elevation_rad[r];
+    const double cos_elevation = std::cos(elevation);
+    const double sin_elevation = std::sin(elevation);
+    for (int c = 0; c < truth.first_hit_range_m.columns(); ++c) {
+      const double range = truth.first_hit_range_m(r, c);
+      if (!(range >= frustum.range_min_m && range <= frustum.range_max_m)) continue;
+      if (!frustum.holds_direction(truth.ray_azimuth_rad[c], elevation)) continue;
+      const auto& [cos_azimuth, sin_azimuth] = cos_sin_azimuth[c];
+      const Vec3 hit_sonar = range * Vec3(cos_elevation * cos_azimuth, cos_elevation * sin_azimuth, sin_elevation);
+      const auto [x, y, z] = grid.frame.cell_of(T_world_sonar * hit_sonar);
+      if (!grid.frame.contains(x, y, z)) continue;
+      const std::size_t cell = grid.frame.index(x, y, z);
+      if (grid.occupancy[cell] == static_cast<std::uint8_t>(Occupancy::surface)) grid.observable[cell] = 1;
+    }
+  }
+}
+
+}  // namespace
+
+void mark_observed(const PingTruth& truth, const SonarGeometry& geometry, const Pose& T_world_sonar,
+                   OccupancyGrid& grid) {
+  const auto& hits = truth.first_hit_range_m;
+  if (hits.empty() || static_cast<std::size_t>(hits.rows()) != truth.ray_elevation_rad.size() ||
+      static_cast<std::size_t>(hits.columns()) != truth.ray_azimuth_rad.size()) {
+    throw ConfigError("ping truth: first_hit_range_m must have one row an elevation ray and one column an azimuth ray");
+  }
+  if (geometry.beams() == 0) throw ConfigError("sonar geometry: no beams; give at least one azimuth");
+  if (grid.occupancy.size() != grid.frame.cells()) {
+    throw ConfigError("occupancy grid: its number of cells does not match its frame; voxelise the scene first");
+  }
+  if (grid.observable.empty()) grid.observable.assign(grid.frame.cells(), 0);
+  const Frustum frustum = frustum_of(geometry);
+  mark_free(truth, frustum, T_world_sonar, grid);
+  mark_hits(truth, frustum, T_world_sonar, grid);
+}
+
+}  // namespace ensonify

@@ -1,0 +1,85 @@
+#include "ensonify/generators/dataset_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "ensonify/config/library.hpp"
+#include "ensonify/core/error.hpp"
+#include "ensonify/generators/describe.hpp"
+#include "ensonify/output/atomic_file.hpp"
+#include "ensonify/output/sha256.hpp"
+
+namespace ensonify {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::array own_entries{"train",        "val",       "test",           "grids",
+                                 "dataset.json", "README.md", "croissant.json", ".ensonify"};
+
+}  // namespace
+
+std::vector<Block> plan_blocks(const Recipe& recipe, SampleFormat format) {
+  const int block_frames = format == SampleFormat::folder ? 16 : 256;
+  std::vector<Block> blocks;
+  int split_start = 0;
+  for (std::size_t s = 0; s < recipe.splits.size(); ++s) {
+    const int frames = recipe.splits[s].frames;
+    for (int start = 0; start < frames; start += block_frames) {
+      blocks.push_back({static_cast<int>(blocks.size()), static_cast<int>(s), split_start + start,
+                        std::min(block_frames, frames - start), start / block_frames});
+    }
+    split_start += frames;
+  }
+  return blocks;
+}
+
+std::string plan_json(const FrameMaker& maker, const std::string& isa, SampleFormat format) {
+  nlohmann::json plan;
+  plan["recipe"] = describe(maker.recipe());
+  plan["sonar"] = describe(maker.sonar());
+  plan["noise"] = describe(maker.noise());
+  plan["isa"] = isa;
+  plan["format"] = format == SampleFormat::folder ? "folder" : "webdataset";
+  for (const PlaceRef& place : maker.places()) {
+    plan["scene_sha256"][place.scene] = Sha256().add(read_file(resolve_name("scenes", place.scene))).hex();
+  }
+  return plan.dump(1);
+}
+
+fs::path DatasetPaths::block(int index) const { return state() / "blocks" / fmt::format("{:06}.json", index); }
+
+fs::path DatasetPaths::image(const std::string& split, const std::string& kind, int number) const {
+  return root / split / kind / fmt::format("{:06}.{}", number, kind == "truth" ? "exr" : "png");
+}
+
+fs::path DatasetPaths::tar(const std::string& split, int number_in_split) const {
+  return root / split / fmt::format("{}-{:06}.tar", split, number_in_split);
+}
+
+fs::path DatasetPaths::grid(const std::string& place, const std::string& extension) const {
+  return root / "grids" / (place + extension);
+}
+
+void open_dataset(const DatasetPaths& paths, const std::string& plan, bool force) {
+  std::error_code error;
+  const bool ours = fs::is_regular_file(paths.plan(), error);
+  if (fs::exists(paths.root, error) && !fs::is_directory(paths.root, error)) {
+    throw ConfigError(fmt::format("--out {}: is a file, not a folder", paths.root.string()));
+  }
+  if (!ours && fs::exists(paths.root, error) && !fs::is_empty(paths.root, error)) {
+    throw ConfigError(fmt::format("--out {}: holds other files; name a new or empty folder", paths.root.string()));
+  }
+  if (ours && !force && read_text(paths.plan()) != plan) {
+    throw ConfigError(
+        fmt::format("--out {}: holds a dataset of another recipe, seed, ISA or format; name another folder, or replace "
+                    "it with --force",
+                    paths.root.string()));
+  }
+  if (ours && force) {
+    for (const char* entry : own_entries) fs::remove_all(paths.root / entry, error);
+  }
+  write_file(paths.plan(), plan);
+}
+
+}  // namespace ensonify

@@ -1,0 +1,105 @@
+#include "ensonify/generators/describe.hpp"
+
+#include <nlohmann/json.hpp>
+
+namespace ensonify {
+
+using nlohmann::json;
+
+json describe(const Distribution& distribution) {
+  struct {
+    json operator()(const Constant& d) const { return d.value; }
+    json operator()(const Uniform& d) const { return {{"uniform", {d.low, d.high}}}; }
+    json operator()(const LogUniform& d) const { return {{"log_uniform", {d.low, d.high}}}; }
+    json operator()(const Normal& d) const { return {{"normal", {d.mean, d.sigma}}}; }
+    json operator()(const Choice& d) const { return {{"choice", d.values}}; }
+  } visitor;
+  return std::visit(visitor, distribution);
+}
+
+json describe(const Recipe& recipe) {
+  json sonar{{"model", recipe.sonar}, {"gain_db", describe(recipe.gain_db)}};
+  if (recipe.range_min_m) sonar["range_min_m"] = *recipe.range_min_m;
+  if (recipe.range_max_m) sonar["range_max_m"] = describe(*recipe.range_max_m);
+  if (recipe.range_bins) sonar["range_bins"] = *recipe.range_bins == 0 ? json("native") : json(*recipe.range_bins);
+  json result{{"name", recipe.name},   {"title", recipe.title},
+              {"seed", recipe.seed},   {"sonar", sonar},
+              {"noise", recipe.noise}, {"mask", {{"threshold", recipe.mask_threshold}}},
+              {"truth", recipe.cell_truth}};
+  result["drift"] = {{"radial_error_m", recipe.drift.radial_error_m}, {"after_s", recipe.drift.after_s}};
+  for (const Split& split : recipe.splits) {
+    json entry{{"frames", split.frames}};
+    for (const PlaceRef& place : split.places) {
+      entry["places"].push_back({{"name", place.name}, {"scene", place.scene}, {"layout", place.layout}});
+    }
+    if (const auto* random = std::get_if<RandomPoses>(&split.poses)) {
+      entry["random_poses"] = {{"roll_deg", describe(random->roll_deg)},
+                               {"pitch_deg", describe(random->pitch_deg)},
+                               {"yaw_deg", describe(random->yaw_deg)},
+                               {"clearance_m", random->clearance_m},
+                               {"least_seen_share", random->least_seen_share},
+                               {"tries", random->tries}};
+    } else {
+      const auto& trajectory = std::get<TrajectoryPoses>(split.poses);
+      entry["trajectory"] = {{"speed_mps", trajectory.speed_mps}, {"rate_hz", trajectory.rate_hz}};
+    }
+    result["splits"][split.name] = entry;
+  }
+  return result;
+}
+
+json describe(const SonarModel& sonar) {
+  const SonarGeometry& g = sonar.geometry;
+  return {{"name", sonar.name},
+          {"title", sonar.title},
+          {"frequency_hz", sonar.frequency_hz},
+          {"bandwidth_hz", sonar.bandwidth_hz},
+          {"source_level_db", sonar.source_level_db},
+          {"range_min_m", g.range_min_m},
+          {"range_max_m", g.range_max_m},
+          {"range_bins", g.range_bins},
+          {"beam_azimuth_rad", g.beam_azimuth_rad},
+          {"azimuth_width_rad", sonar.receive_azimuth.width_rad()},
+          {"elevation_fov_rad", g.elevation_fov_rad},
+          {"fan_edge_db", sonar.fan_edge_db},
+          {"receive",
+           {{"tvg_spreading_db", sonar.receive.tvg_spreading_db},
+            {"tvg_absorption_db_per_m", sonar.receive.tvg_absorption_db_per_m},
+            {"saturation_level_db", sonar.receive.saturation_level_db},
+            {"gamma", sonar.receive.gamma},
+            {"bits", sonar.receive.bits}}},
+          {"rays",
+           {{"azimuth_per_beam", sonar.rays.azimuth_rays_per_beam}, {"elevation", sonar.rays.elevation_rays}}},
+          {"unverified", sonar.unverified}};
+}
+
+json describe(const NoiseProfile& noise) {
+  json stages = json::array();
+  for (const auto& stage : noise.stages) {
+    json entry;
+    const auto put = [&](const char* parameter, const Distribution& d) {
+      entry[parameter] = describe(d);
+      return 0.0;
+    };
+    std::visit(
+        [&](const auto& s) {
+          entry["stage"] = s.kind;
+          s.map(put);
+        },
+        stage);
+    stages.push_back(entry);
+  }
+  return {{"name", noise.name}, {"stages", stages}};
+}
+
+json describe(const Pose& T_a_b) {
+  json rows = json::array();
+  for (int r = 0; r < 4; ++r) {
+    json row = json::array();
+    for (int c = 0; c < 4; ++c) row.push_back(T_a_b.matrix()(r, c));
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+}  // namespace ensonify

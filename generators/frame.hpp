@@ -1,0 +1,70 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "ensonify/generators/form_images.hpp"
+#include "ensonify/generators/place.hpp"
+#include "ensonify/generators/recipe.hpp"
+#include "ensonify/sim/trace_ping.hpp"
+
+namespace ensonify {
+
+/// Where a frame stands in its dataset and where its sonar stood.
+struct FramePose {
+  int index = 0;        ///< over the whole dataset
+  int split = 0;        ///< index into Recipe::splits
+  int number = 0;       ///< within the split: its file name
+  int place = 0;        ///< over all splits' places in order
+  std::optional<double> time_s;  ///< empty for random poses
+  Pose T_world_sonar = Pose::Identity();
+  Pose T_world_sonar_est = Pose::Identity();
+  SampledValues sampled;
+};
+
+struct Frame {
+  FramePose pose;
+  SonarModel sonar;
+  PingImages images;
+  PingTruth truth;
+  Echo echo;
+};
+
+/// Makes frames of a recipe: a pure function of (recipe, index); places are built when first needed and kept.
+/// Any number of threads may call at once.
+class FrameMaker {
+ public:
+  /// Loads sonar and noise. Throws ConfigError.
+  FrameMaker(Recipe recipe, std::string isa);
+  ~FrameMaker();
+
+  const Recipe& recipe() const { return recipe_; }
+  const SonarModel& sonar() const { return sonar_; }
+  const NoiseProfile& noise() const { return noise_; }
+  const std::vector<PlaceRef>& places() const { return places_; }
+  /// Builds the place if need be.
+  const Place& place(int index) const;
+
+  /// Pose of a frame, without its ping. Throws DataError where no random pose keeps the rules, ConfigError where a
+  /// trajectory runs into something.
+  FramePose pose(int index) const;
+  Ping ping(const FramePose& pose, bool cell_truth) const;
+  Frame make(int index) const;
+
+ private:
+  struct Slot;
+  SonarModel sonar_of(RandomKey frame_key, SampledValues& sampled) const;
+  RandomKey frame_key(int index) const;
+  const Slot& slot(int place) const;
+
+  Recipe recipe_;
+  std::string isa_;
+  SonarModel sonar_;
+  PointSpread spread_;
+  NoiseProfile noise_;
+  std::vector<PlaceRef> places_;
+  std::unique_ptr<Slot[]> slots_;
+};
+
+}  // namespace ensonify

@@ -1,0 +1,112 @@
+#include "ensonify/generators/generate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "ensonify/core/error.hpp"
+#include "ensonify/core/parallel.hpp"
+#include "ensonify/generators/finish_dataset.hpp"
+#include "ensonify/generators/write_block.hpp"
+#include "ensonify/output/atomic_file.hpp"
+
+namespace ensonify {
+namespace {
+
+bool is_done(const DatasetPaths& paths, const Block& block) {
+  std::error_code error;
+  return std::filesystem::is_regular_file(paths.block(block.index), error);
+}
+
+/// A trajectory inside a wall is a mistake in the configuration: found before any work is done.
+void check_trajectories(const FrameMaker& maker) {
+  int first = 0;
+  for (const Split& split : maker.recipe().splits) {
+    if (std::holds_alternative<TrajectoryPoses>(split.poses)) {
+      for (int i = 0; i < split.frames; ++i) maker.pose(first + i);
+    }
+    first += split.frames;
+  }
+}
+
+struct Failure {
+  int block;
+  std::string reason;
+};
+
+void report_failures(const DatasetPaths& paths, std::vector<Failure> failures) {
+  std::sort(failures.begin(), failures.end(), [](const Failure& a, const Failure& b) { return a.block < b.block; });
+  std::string lines;
+  for (const Failure& f : failures) {
+    lines += nlohmann::json{{"block", f.block}, {"reason", f.reason}}.dump() + "\n";
+  }
+  const auto file = paths.state() / "failed.jsonl";
+  write_file(file, lines);
+  throw DataError(fmt::format("{} blocks could not be made, listed in {}; the first: {}", failures.size(),
+                              file.string(), failures.front().reason));
+}
+
+}  // namespace
+
+Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
+  const FrameMaker maker(recipe, options.isa);
+  if (recipe.cell_truth && options.format == SampleFormat::webdataset) {
+    throw ConfigError("truth: true writes EXR files, which WebDataset shards do not hold; use --format folder");
+  }
+  const DatasetPaths paths{options.out};
+  open_dataset(paths, plan_json(maker, options.isa, options.format), options.force);
+  check_trajectories(maker);
+
+  const std::vector<Block> blocks = plan_blocks(recipe, options.format);
+  std::vector<Block> missing;
+  Progress progress;
+  for (const Block& block : blocks) {
+    if (block.index % options.shards != options.shard) continue;
+    progress.total += block.frames;
+    if (is_done(paths, block)) progress.done += block.frames;
+    else missing.push_back(block);
+  }
+  options.on_progress(progress);
+
+  std::mutex mutex;
+  std::vector<Failure> failures;
+  std::atomic<bool> stopped = false;
+  const auto after_frame = [&] {
+    const std::scoped_lock lock(mutex);
+    ++progress.done;
+    ++progress.fresh;
+    options.on_progress(progress);
+    if (options.stopped()) stopped = true;
+    return !stopped;
+  };
+  parallel_for(static_cast<int>(missing.size()), [&](int i) {
+    if (stopped) return;
+    try {
+      write_block(maker, paths, missing[static_cast<std::size_t>(i)], options.format, after_frame);
+    } catch (const DataError& e) {
+      const std::scoped_lock lock(mutex);
+      failures.push_back({missing[static_cast<std::size_t>(i)].index, e.what()});
+    }
+  });
+  if (!failures.empty()) report_failures(paths, std::move(failures));
+  if (stopped) return Outcome::stopped;
+  if (!std::all_of(blocks.begin(), blocks.end(), [&](const Block& b) { return is_done(paths, b); })) {
+    return Outcome::shard_done;
+  }
+  return finish_dataset(maker, paths, blocks, options) ? Outcome::complete : Outcome::stopped;
+}
+
+std::string generate_only(const Recipe& recipe, const GenerateOptions& options, int index) {
+  if (index < 0 || index >= recipe.frames()) {
+    throw ConfigError(fmt::format("--only {}: the recipe has frames 0 to {}", index, recipe.frames() - 1));
+  }
+  const FrameMaker maker(recipe, options.isa);
+  const DatasetPaths paths{options.out};
+  open_dataset(paths, plan_json(maker, options.isa, SampleFormat::folder), options.force);
+  return write_frame(maker, paths, index).line;
+}
+
+}  // namespace ensonify

@@ -1,0 +1,147 @@
+#include "ensonify/generators/recipe.hpp"
+
+#include <fmt/format.h>
+
+#include <numeric>
+#include <set>
+
+#include "ensonify/config/library.hpp"
+#include "ensonify/config/reader.hpp"
+
+namespace ensonify {
+namespace {
+
+constexpr int max_frames = 100'000'000;
+constexpr Limits angle_limits{-360.0, 360.0};
+
+/// A file beside the recipe where there is one, else the word as it is: a path or a bundled name.
+std::string beside(const Reader& reader, const std::string& word) {
+  std::error_code no_throw;
+  const std::filesystem::path path = reader.folder() / word;
+  return std::filesystem::is_regular_file(path, no_throw) ? path.string() : word;
+}
+
+std::vector<PlaceRef> read_places(Reader& split) {
+  std::vector<PlaceRef> places;
+  for (Reader& entry : split.children("places")) {
+    const std::string scene = beside(entry, entry.text("scene"));
+    const std::string stem = std::filesystem::path(scene).stem().string();
+    const std::vector<double> layouts =
+        entry.has("layouts") ? entry.numbers("layouts", -1, {0.0, 1e9}) : std::vector<double>{0.0};
+    if (layouts.empty()) entry.fail("layouts", "needs at least one layout number");
+    for (const double layout : layouts) {
+      if (layout != static_cast<double>(static_cast<std::uint64_t>(layout))) {
+        entry.fail("layouts", "must be a list of whole numbers");
+      }
+      const auto number = static_cast<std::uint64_t>(layout);
+      const bool alone = layouts.size() == 1;
+      places.push_back({alone ? stem : fmt::format("{}_layout{}", stem, number), scene, number});
+    }
+    entry.finish();
+  }
+  if (places.empty()) split.fail("places", "needs at least one scene");
+  return places;
+}
+
+RandomPoses read_random_poses(Reader poses) {
+  RandomPoses random;
+  random.roll_deg = read_distribution_or(poses, "roll_deg", 0.0, angle_limits);
+  random.pitch_deg = read_distribution_or(poses, "pitch_deg", 0.0, {-89.0, 89.0});
+  if (poses.has("yaw_deg")) random.yaw_deg = read_distribution(poses, "yaw_deg", angle_limits);
+  random.clearance_m = poses.number_or("clearance_m", random.clearance_m, {0.0, 10.0});
+  random.least_seen_share = poses.number_or("least_seen_share", random.least_seen_share, {0.0, 1.0});
+  random.tries = poses.integer_or("tries", random.tries, 1, 100000);
+  poses.finish();
+  return random;
+}
+
+TrajectoryPoses read_trajectory_poses(Reader poses) {
+  TrajectoryPoses trajectory;
+  trajectory.speed_mps = poses.number_or("speed_mps", trajectory.speed_mps, {0.001, 20.0});
+  trajectory.rate_hz = poses.number_or("rate_hz", trajectory.rate_hz, {0.001, 1000.0});
+  poses.finish();
+  return trajectory;
+}
+
+Split read_split(const std::string& name, Reader split) {
+  Split result;
+  result.name = name;
+  result.places = read_places(split);
+  if (split.has("frames_per_place")) {
+    result.frames = split.integer("frames_per_place", 1, max_frames) * static_cast<int>(result.places.size());
+  } else {
+    result.frames = split.integer("frames", 1, max_frames);
+  }
+  if (split.has("trajectory")) {
+    result.poses = read_trajectory_poses(split.child("trajectory"));
+    if (result.frames % static_cast<int>(result.places.size()) != 0) {
+      split.fail("frames", fmt::format("must be a multiple of the {} places of a trajectory split",
+                                       result.places.size()));
+    }
+  } else {
+    result.poses = read_random_poses(split.child("random_poses"));
+  }
+  split.finish();
+  return result;
+}
+
+void refuse_shared_places(const Reader& splits, const std::vector<Split>& all) {
+  std::set<std::pair<std::string, std::uint64_t>> seen;
+  std::set<std::string> names;
+  for (const Split& split : all) {
+    for (const PlaceRef& place : split.places) {
+      if (!seen.emplace(place.scene, place.layout).second || !names.insert(place.name).second) {
+        splits.fail(split.name, fmt::format("place {} layout {} is used twice; splits must not share a layout",
+                                            place.scene, place.layout));
+      }
+    }
+  }
+}
+
+}  // namespace
+
+int Recipe::frames() const {
+  return std::accumulate(splits.begin(), splits.end(), 0, [](int sum, const Split& s) { return sum + s.frames; });
+}
+
+Recipe load_recipe(const std::string& path_or_name) {
+  Reader file = Reader::from_file(resolve_name("generators", path_or_name));
+  Recipe recipe;
+  recipe.name = file.text("name");
+  recipe.title = file.text_or("title", recipe.name);
+  recipe.seed = static_cast<std::uint64_t>(file.number_or("seed", 0, {0.0, 9e15}));
+  Reader sonar = file.child("sonar");
+  recipe.sonar = beside(file, sonar.text("model"));
+  if (sonar.has("range_min_m")) recipe.range_min_m = sonar.number("range_min_m", positive);
+  if (sonar.has("range_max_m")) recipe.range_max_m = read_distribution(sonar, "range_max_m", positive);
+  if (sonar.has("range_bins")) {
+    recipe.range_bins = sonar.text("range_bins") == "native" ? 0 : sonar.integer("range_bins", 1, 16384);
+  }
+  recipe.gain_db = read_distribution_or(sonar, "gain_db", 0.0, {-60.0, 60.0});
+  sonar.finish();
+  recipe.noise = beside(file, file.text("noise"));
+  if (file.has("mask")) {
+    Reader mask = file.child("mask");
+    recipe.mask_threshold = mask.integer("threshold", 1, 255);
+    mask.finish();
+  }
+  recipe.cell_truth = file.boolean_or("truth", false);
+  if (file.has("drift")) {
+    Reader drift = file.child("drift");
+    recipe.drift.radial_error_m = drift.number("radial_error_m", {0.0, 1e4});
+    recipe.drift.after_s = drift.number("after_s", {1.0, 1e5});
+    drift.finish();
+  }
+  Reader splits = file.child("splits");
+  for (const char* name : {"train", "val", "test"}) {
+    if (splits.has(name)) recipe.splits.push_back(read_split(name, splits.child(name)));
+  }
+  splits.finish();
+  if (recipe.splits.empty()) splits.fail("", "needs at least one of train, val, test");
+  refuse_shared_places(splits, recipe.splits);
+  if (recipe.frames() > max_frames) splits.fail("", fmt::format("at most {} frames", max_frames));
+  file.finish();
+  return recipe;
+}
+
+}  // namespace ensonify

@@ -1,0 +1,144 @@
+#include "ensonify/generators/write_block.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "ensonify/core/error.hpp"
+#include "ensonify/generators/describe.hpp"
+#include "ensonify/generators/truth_channels.hpp"
+#include "ensonify/output/atomic_file.hpp"
+#include "ensonify/output/png.hpp"
+#include "ensonify/output/sha256.hpp"
+#include "ensonify/output/tar_shard.hpp"
+
+namespace ensonify {
+namespace {
+
+using nlohmann::json;
+
+/// Every image of a frame under the name of its folder.
+std::vector<std::pair<std::string, const Image2<std::uint8_t>*>> images_of(const PingImages& images) {
+  return {{"raw", &images.raw.grey}, {"clean", &images.clean.grey}, {"mask", &images.mask}, {"labels", &images.labels}};
+}
+
+FrameRecord record_of(const FrameMaker& maker, const Frame& frame) {
+  FrameRecord record;
+  record.index = frame.pose.index;
+  record.line = metadata_line(maker, frame.pose, frame.sonar, frame.images.mask);
+  record.sha256 = content_hash(frame.images.raw.grey, frame.images.clean.grey, frame.images.mask, frame.images.labels,
+                               record.line);
+  return record;
+}
+
+void write_record(const DatasetPaths& paths, const Block& block, const std::vector<FrameRecord>& records) {
+  json frames = json::array();
+  for (const FrameRecord& r : records) frames.push_back({{"index", r.index}, {"sha256", r.sha256}, {"line", r.line}});
+  write_file(paths.block(block.index), json{{"frames", frames}}.dump());
+}
+
+}  // namespace
+
+std::string metadata_line(const FrameMaker& maker, const FramePose& pose, const SonarModel& sonar,
+                          const Image2<std::uint8_t>& mask) {
+  const Recipe& recipe = maker.recipe();
+  const PlaceRef& place = maker.places()[static_cast<std::size_t>(pose.place)];
+  const auto file = [&](const char* kind, const char* extension) {
+    return fmt::format("{}/{:06}.{}", kind, pose.number, extension);
+  };
+  nlohmann::ordered_json line;
+  line["file_name"] = file("raw", "png");
+  line["mask_file_name"] = file("mask", "png");
+  line["clean_file_name"] = file("clean", "png");
+  line["labels_file_name"] = file("labels", "png");
+  if (recipe.cell_truth) line["truth_file_name"] = file("truth", "exr");
+  line["index"] = pose.index;
+  line["scene"] = std::filesystem::path(place.scene).stem().string();
+  line["layout"] = place.layout;
+  line["place"] = place.name;
+  line["sonar"] = sonar.name;
+  line["range_min_m"] = sonar.geometry.range_min_m;
+  line["range_max_m"] = sonar.geometry.range_max_m;
+  line["noise"] = maker.noise().name;
+  line["time"] = pose.time_s ? json(*pose.time_s) : json(nullptr);
+  line["T_world_sonar"] = describe(pose.T_world_sonar);
+  line["T_world_sonar_est"] = describe(pose.T_world_sonar_est);
+  line["seed"] = recipe.seed;
+  line["mask_share"] = static_cast<double>(std::count(mask.pixels().begin(), mask.pixels().end(), 255)) /
+                       static_cast<double>(mask.size());
+  line["sampled"] = json::object();
+  for (const auto& [name, value] : pose.sampled) line["sampled"][name] = value;
+  return line.dump();
+}
+
+std::string content_hash(const Image2<std::uint8_t>& raw, const Image2<std::uint8_t>& clean,
+                         const Image2<std::uint8_t>& mask, const Image2<std::uint8_t>& labels,
+                         const std::string& line) {
+  return Sha256()
+      .add(raw.pixels())
+      .add(clean.pixels())
+      .add(mask.pixels())
+      .add(labels.pixels())
+      .add(std::string_view(line))
+      .hex();
+}
+
+FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, int index) {
+  const Frame frame = maker.make(index);
+  const std::string& split = maker.recipe().splits[static_cast<std::size_t>(frame.pose.split)].name;
+  for (const auto& [kind, image] : images_of(frame.images)) {
+    write_file(paths.image(split, kind, frame.pose.number), encode_png(*image));
+  }
+  if (maker.recipe().cell_truth) {
+    write_exr(paths.image(split, "truth", frame.pose.number), truth_channels(frame.echo, frame.truth), truth_comment);
+  }
+  return record_of(maker, frame);
+}
+
+bool write_block(const FrameMaker& maker, const DatasetPaths& paths, const Block& block, SampleFormat format,
+                 const std::function<bool()>& after_frame) {
+  std::vector<FrameRecord> records;
+  const std::string& split = maker.recipe().splits[static_cast<std::size_t>(block.split)].name;
+  std::optional<TarShard> tar;
+  if (format == SampleFormat::webdataset) tar.emplace(paths.tar(split, block.number_in_split));
+  for (int index = block.first; index < block.first + block.frames; ++index) {
+    if (tar) {
+      const Frame frame = maker.make(index);
+      for (const auto& [kind, image] : images_of(frame.images)) {
+        tar->add(fmt::format("{:06}.{}.png", frame.pose.number, kind), encode_png(*image));
+      }
+      records.push_back(record_of(maker, frame));
+      const std::string& line = records.back().line;
+      tar->add(fmt::format("{:06}.json", frame.pose.number),
+               {reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
+    } else {
+      records.push_back(write_frame(maker, paths, index));
+    }
+    if (!after_frame()) return false;
+  }
+  if (tar) tar->finish();
+  write_record(paths, block, records);
+  return true;
+}
+
+std::vector<FrameRecord> read_block_record(const DatasetPaths& paths, const Block& block) {
+  std::error_code error;
+  const auto file = paths.block(block.index);
+  if (!std::filesystem::is_regular_file(file, error)) return {};
+  std::vector<FrameRecord> records;
+  try {
+    for (const json& frame : json::parse(read_text(file)).at("frames")) {
+      records.push_back({frame.at("index"), frame.at("sha256"), frame.at("line")});
+    }
+  } catch (const json::exception& e) {
+    throw DataError(fmt::format("{}: broken record: {}; delete it to make the block again", file.string(), e.what()));
+  }
+  if (static_cast<int>(records.size()) != block.frames) {
+    throw DataError(fmt::format("{}: {} frames recorded, {} expected; delete it to make the block again", file.string(),
+                                records.size(), block.frames));
+  }
+  return records;
+}
+
+}  // namespace ensonify

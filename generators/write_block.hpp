@@ -1,0 +1,37 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "ensonify/generators/dataset_plan.hpp"
+
+namespace ensonify {
+
+/// One line of metadata.jsonl (without newline) for a frame.
+std::string metadata_line(const FrameMaker& maker, const FramePose& pose, const SonarModel& sonar,
+                          const Image2<std::uint8_t>& mask);
+
+/// SHA-256 of what a frame says, whatever its files: pixels of raw, clean, mask, labels, and its metadata line.
+std::string content_hash(const Image2<std::uint8_t>& raw, const Image2<std::uint8_t>& clean,
+                         const Image2<std::uint8_t>& mask, const Image2<std::uint8_t>& labels,
+                         const std::string& line);
+
+struct FrameRecord {
+  int index = 0;
+  std::string sha256;
+  std::string line;
+};
+
+/// Writes the files of one frame in a folder dataset; returns its record.
+FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, int index);
+
+/// Makes and writes a block, then its record in the state folder, which marks it as done. Calls after_frame() after
+/// each; where that returns false, stops and returns false, and the block counts as not done.
+bool write_block(const FrameMaker& maker, const DatasetPaths& paths, const Block& block, SampleFormat format,
+                 const std::function<bool()>& after_frame);
+
+/// The record of a finished block; empty where it is not finished. Throws DataError on a broken record.
+std::vector<FrameRecord> read_block_record(const DatasetPaths& paths, const Block& block);
+
+}  // namespace ensonify

@@ -82,6 +82,8 @@ void write_npz(const std::filesystem::path& path, const std::map<std::string, Np
   try {
     const Archive zip(archive_write_new(), archive_write_free);
     archive_write_set_format_zip(zip.get());
+    archive_write_set_bytes_per_block(zip.get(), 1 << 20);
+    archive_write_set_bytes_in_last_block(zip.get(), 1);  // no padding
     // Level 1: grids are mostly runs; higher levels cost several times as long for a few per cent.
     if (archive_write_set_options(zip.get(), "zip:compression=deflate,zip:compression-level=1") != ARCHIVE_OK ||
         archive_write_open(zip.get(), &sink, nullptr, take, nullptr) != ARCHIVE_OK) {

@@ -72,7 +72,7 @@ RandomKey FrameMaker::frame_key(int index) const {
   return RandomKey::from_seed(recipe_.seed).child("frame").child(static_cast<std::uint64_t>(index));
 }
 
-FramePose FrameMaker::pose(int index) const {
+FramePose FrameMaker::locate(int index) const {
   FramePose frame;
   frame.index = index;
   frame.number = index;
@@ -84,9 +84,15 @@ FramePose FrameMaker::pose(int index) const {
   }
   const Split& split = recipe_.splits[frame.split];
   const int places = static_cast<int>(split.places.size());
+  const bool random = std::holds_alternative<RandomPoses>(split.poses);
+  frame.place = first_place + (random ? frame.number % places : frame.number / (split.frames / places));
+  return frame;
+}
 
+FramePose FrameMaker::pose(int index) const {
+  FramePose frame = locate(index);
+  const Split& split = recipe_.splits[frame.split];
   if (const auto* random = std::get_if<RandomPoses>(&split.poses)) {
-    frame.place = first_place + frame.number % places;
     const Place& where = place(frame.place);
     const auto sampled = sample_pose(*random, where, sonar_.geometry, frame_key(index).child("pose"));
     if (!sampled) {
@@ -101,8 +107,7 @@ FramePose FrameMaker::pose(int index) const {
   }
 
   const auto& trajectory = std::get<TrajectoryPoses>(split.poses);
-  const int frames_each = split.frames / places;
-  frame.place = first_place + frame.number / frames_each;
+  const int frames_each = split.frames / static_cast<int>(split.places.size());
   const Slot& where = slot(frame.place);
   const std::string& name = places_[frame.place].name;
   if (!where.path) throw ConfigError(fmt::format("scene {}: has no waypoints, which a trajectory split needs", name));
@@ -121,9 +126,14 @@ FramePose FrameMaker::pose(int index) const {
   return frame;
 }
 
-SonarModel FrameMaker::sonar_of(RandomKey key, SampledValues& sampled) const {
+SonarModel FrameMaker::sonar_for(int index) const {
+  SampledValues unused;
+  return sonar_for(index, unused);
+}
+
+SonarModel FrameMaker::sonar_for(int index, SampledValues& sampled) const {
   if (!window_varies(recipe_)) return sonar_;
-  RandomSequence random(key.child("range_max_m"));
+  RandomSequence random(frame_key(index).child("range_max_m"));
   const double range_max_m = sample(*recipe_.range_max_m, random);
   sampled.emplace_back("sonar.range_max_m", range_max_m);
   return load_sonar(recipe_.sonar, window_of(recipe_, range_max_m));
@@ -132,9 +142,7 @@ SonarModel FrameMaker::sonar_of(RandomKey key, SampledValues& sampled) const {
 Ping FrameMaker::ping(const FramePose& pose, bool cell_truth) const {
   const Slot& where = slot(pose.place);
   if (!window_varies(recipe_)) return where.tracer->trace(pose.T_world_sonar, cell_truth);
-  SampledValues unused;
-  const SonarModel sonar = sonar_of(frame_key(pose.index), unused);
-  return PingTracer(where.place->rays, sonar, where.place->scene.water).trace(pose.T_world_sonar, cell_truth);
+  return PingTracer(where.place->rays, sonar_for(pose.index), where.place->scene.water).trace(pose.T_world_sonar, cell_truth);
 }
 
 Frame FrameMaker::make(int index) const {
@@ -142,7 +150,7 @@ Frame FrameMaker::make(int index) const {
   Frame frame;
   frame.pose = pose(index);
   SampledValues& sampled = frame.pose.sampled;
-  frame.sonar = sonar_of(key, sampled);
+  frame.sonar = sonar_for(index, sampled);
   Ping ping = this->ping(frame.pose, recipe_.cell_truth);
 
   ImageSettings settings;

@@ -46,6 +46,10 @@ class FrameMaker {
   /// Builds the place if need be.
   const Place& place(int index) const;
 
+  /// Split, number and place of a frame, without its pose.
+  FramePose locate(int index) const;
+  /// The instrument as it is set in a frame.
+  SonarModel sonar_for(int index) const;
   /// Pose of a frame, without its ping. Throws DataError where no random pose keeps the rules, ConfigError where a
   /// trajectory runs into something.
   FramePose pose(int index) const;
@@ -54,7 +58,7 @@ class FrameMaker {
 
  private:
   struct Slot;
-  SonarModel sonar_of(RandomKey frame_key, SampledValues& sampled) const;
+  SonarModel sonar_for(int index, SampledValues& sampled) const;
   RandomKey frame_key(int index) const;
   const Slot& slot(int place) const;
 

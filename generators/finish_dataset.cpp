@@ -1,0 +1,166 @@
+#include "ensonify/generators/finish_dataset.hpp"
+
+#include <fmt/format.h>
+#include <tbb/enumerable_thread_specific.h>
+
+#include <atomic>
+#include <fstream>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "ensonify/core/error.hpp"
+#include "ensonify/core/parallel.hpp"
+#include "ensonify/generators/dataset_card.hpp"
+#include "ensonify/generators/describe.hpp"
+#include "ensonify/generators/write_block.hpp"
+#include "ensonify/output/atomic_file.hpp"
+#include "ensonify/output/grid_files.hpp"
+#include "ensonify/output/sha256.hpp"
+#include "ensonify/output/trajectory_file.hpp"
+#include "ensonify/sim/observe.hpp"
+
+namespace ensonify {
+namespace {
+
+using nlohmann::json;
+
+/// Frames of the dataset at each place, ascending.
+std::vector<std::vector<int>> frames_by_place(const FrameMaker& maker) {
+  std::vector<std::vector<int>> frames(maker.places().size());
+  for (int i = 0; i < maker.recipe().frames(); ++i) {
+    frames[static_cast<std::size_t>(maker.locate(i).place)].push_back(i);
+  }
+  return frames;
+}
+
+/// The place's truth with every cell marked that one of the frames could observe.
+OccupancyGrid observed_grid(const FrameMaker& maker, int place, const std::vector<int>& frames,
+                            const std::function<bool()>& after_frame) {
+  OccupancyGrid grid = maker.place(place).truth;
+  grid.observable.assign(grid.frame.cells(), 0);
+  // What a thread's own frames observed is joined by a logical or: the order does not matter.
+  tbb::enumerable_thread_specific<OccupancyGrid> seen(grid);
+  std::atomic<bool> stopped = false;
+  parallel_for(static_cast<int>(frames.size()), [&](int i) {
+    if (stopped) return;
+    const FramePose pose = maker.pose(frames[static_cast<std::size_t>(i)]);
+    const SonarModel sonar = maker.sonar_for(pose.index);
+    mark_observed(maker.ping(pose, false).truth, sonar.geometry, pose.T_world_sonar, seen.local());
+    if (!after_frame()) stopped = true;
+  });
+  for (const OccupancyGrid& part : seen) {
+    for (std::size_t c = 0; c < grid.observable.size(); ++c) grid.observable[c] |= part.observable[c];
+  }
+  return grid;
+}
+
+std::string write_grids(const DatasetPaths& paths, const std::string& place, const OccupancyGrid& grid) {
+  write_grid(grid, paths.grid(place, ".npz"));
+  write_grid(grid, paths.grid(place, ".bt"));
+  write_grid(grid, paths.grid(place, ".pgm"));
+  return Sha256().add(grid.occupancy).add(grid.observable).hex();
+}
+
+void write_trajectories(const FrameMaker& maker, const DatasetPaths& paths,
+                        const std::vector<std::vector<int>>& frames) {
+  for (std::size_t place = 0; place < frames.size(); ++place) {
+    std::vector<StampedPose> truth;
+    std::vector<StampedPose> estimate;
+    std::string split;
+    for (const int index : frames[place]) {
+      const FramePose pose = maker.pose(index);
+      if (!pose.time_s) break;
+      split = maker.recipe().splits[static_cast<std::size_t>(pose.split)].name;
+      truth.push_back({*pose.time_s, pose.T_world_sonar});
+      estimate.push_back({*pose.time_s, pose.T_world_sonar_est});
+    }
+    if (truth.empty()) continue;
+    const auto folder = paths.root / split / "trajectories";
+    write_tum(folder / (maker.places()[place].name + ".txt"), truth);
+    write_tum(folder / (maker.places()[place].name + "_est.txt"), estimate);
+  }
+}
+
+/// Writes metadata.jsonl of every split from the block records; returns a manifest entry a block, and adds every
+/// frame's hash to `root`.
+json write_metadata(const FrameMaker& maker, const DatasetPaths& paths, const std::vector<Block>& blocks,
+                    Sha256& root) {
+  json shards = json::array();
+  for (std::size_t s = 0; s < maker.recipe().splits.size(); ++s) {
+    const std::string& split = maker.recipe().splits[s].name;
+    const auto file = paths.root / split / "metadata.jsonl";
+    write_atomically(file, [&](const std::filesystem::path& temporary) {
+      std::ofstream out(temporary, std::ios::binary);
+      for (const Block& block : blocks) {
+        if (block.split != static_cast<int>(s)) continue;
+        Sha256 hash;
+        for (const FrameRecord& record : read_block_record(paths, block)) {
+          out << record.line << '\n';
+          hash.add(std::string_view(record.sha256));
+          root.add(std::string_view(record.sha256));
+        }
+        shards.push_back(
+            {{"split", split}, {"first_index", block.first}, {"frames", block.frames}, {"sha256", hash.hex()}});
+      }
+      if (!out.flush()) throw DataError(fmt::format("{}: can not be written", file.string()));
+    });
+  }
+  return shards;
+}
+
+json label_legend() {
+  return {{"0", "water"}, {"1", "direct echo"}, {"2", "multipath"}, {"3", "sidelobe"}, {"4", "shadow"}, {"5", "outside"}};
+}
+
+}  // namespace
+
+bool finish_dataset(const FrameMaker& maker, const DatasetPaths& paths, const std::vector<Block>& blocks,
+                    const GenerateOptions& options) {
+  const Recipe& recipe = maker.recipe();
+  const auto frames = frames_by_place(maker);
+  Progress progress{0, 0, recipe.frames(), "grids"};
+  std::mutex mutex;
+  const auto after_frame = [&] {
+    const std::scoped_lock lock(mutex);
+    ++progress.done;
+    ++progress.fresh;
+    options.on_progress(progress);
+    return !options.stopped();
+  };
+
+  Sha256 root;
+  json shards = write_metadata(maker, paths, blocks, root);
+  json grids = json::array();
+  for (std::size_t place = 0; place < frames.size(); ++place) {
+    const OccupancyGrid grid = observed_grid(maker, static_cast<int>(place), frames[place], after_frame);
+    if (options.stopped()) return false;
+    const std::string& name = maker.places()[place].name;
+    const std::string hash = write_grids(paths, name, grid);
+    root.add(std::string_view(hash));
+    grids.push_back({{"place", name}, {"file", "grids/" + name + ".npz"}, {"sha256", hash}});
+  }
+  write_trajectories(maker, paths, frames);
+
+  json manifest{{"schema", "ensonify-dataset"},
+                {"schema_version", 1},
+                {"tool", {{"name", "ensonify"}, {"version", ENSONIFY_VERSION}}},
+                {"command_line", options.command_line},
+                {"recipe", describe(recipe)},
+                {"sonar", describe(maker.sonar())},
+                {"noise", describe(maker.noise())},
+                {"seed", recipe.seed},
+                {"isa", options.isa},
+                {"format", options.format == SampleFormat::folder ? "folder" : "webdataset"},
+                {"mask", {{"threshold", recipe.mask_threshold}, {"values", {0, 255}}}},
+                {"labels", label_legend()},
+                {"shards", shards},
+                {"grids", grids},
+                {"root_hash", root.hex()}};
+  for (const Split& split : recipe.splits) manifest["counts"][split.name] = split.frames;
+  write_dataset_card(paths, manifest);
+  write_croissant(paths, manifest);
+  write_file(paths.manifest(), manifest.dump(1) + "\n");
+  return true;
+}
+
+}  // namespace ensonify

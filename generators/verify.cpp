@@ -1,0 +1,209 @@
+#include "ensonify/generators/verify.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+
+#include "ensonify/core/error.hpp"
+#include "ensonify/core/parallel.hpp"
+#include "ensonify/generators/write_block.hpp"
+#include "ensonify/output/atomic_file.hpp"
+#include "ensonify/output/grid_files.hpp"
+#include "ensonify/output/png.hpp"
+#include "ensonify/output/sha256.hpp"
+#include "ensonify/output/tar_shard.hpp"
+
+namespace ensonify {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::array kinds{"raw", "clean", "mask", "labels"};
+using FrameImages = std::map<std::string, Image2<std::uint8_t>>;
+
+/// What is wrong with the images of one frame; empty where nothing is.
+std::string image_fault(const FrameImages& images, int threshold, int bins, int beams) {
+  for (const char* kind : kinds) {
+    const Image2<std::uint8_t>& image = images.at(kind);
+    // A recipe may draw the range window a frame, so the number of native bins may differ.
+    if (image.columns() != beams || (bins > 0 && image.rows() != bins)) {
+      return fmt::format("{} is {} x {}, not {} x {}", kind, image.rows(), image.columns(), bins, beams);
+    }
+  }
+  const auto clean = images.at("clean").pixels();
+  const auto mask = images.at("mask").pixels();
+  if (clean.size() != mask.size()) return "mask and clean differ in size";
+  for (std::size_t i = 0; i < clean.size(); ++i) {
+    if (mask[i] != (clean[i] >= threshold ? 255 : 0)) return fmt::format("mask is not clean >= {}", threshold);
+  }
+  return {};
+}
+
+class Verifier {
+ public:
+  Verifier(const fs::path& folder, const std::function<void(int, int)>& on_progress)
+      : folder_(folder), on_progress_(on_progress) {
+    const fs::path manifest = folder / "dataset.json";
+    std::error_code error;
+    if (!fs::is_regular_file(manifest, error)) {
+      throw DataError(fmt::format("{}: no dataset.json: no dataset, or an unfinished one; run generate again to finish it",
+                                  folder.string()));
+    }
+    try {
+      manifest_ = json::parse(read_text(manifest));
+      threshold_ = manifest_.at("mask").at("threshold");
+      beams_ = static_cast<int>(manifest_.at("sonar").at("beam_azimuth_rad").size());
+      const json& sonar = manifest_.at("recipe").at("sonar");
+      const bool varies = sonar.contains("range_max_m") && sonar["range_max_m"].is_object();
+      bins_ = varies ? 0 : manifest_.at("sonar").at("range_bins").get<int>();
+      for (const auto& [split, count] : manifest_.at("counts").items()) total_ += count.get<int>();
+    } catch (const json::exception& e) {
+      throw DataError(fmt::format("{}: broken manifest: {}", manifest.string(), e.what()));
+    }
+  }
+
+  VerifyReport run() {
+    Sha256 root;
+    for (const auto& [split, first_shard] : splits_in_order()) check_split(split, first_shard, root);
+    check_grids(root);
+    if (root.hex() != manifest_.at("root_hash")) fault("the root hash differs from the manifest's");
+    return std::move(report_);
+  }
+
+ private:
+  void fault(const std::string& what) {
+    const std::scoped_lock lock(mutex_);
+    if (report_.faults.size() < 100) report_.faults.push_back(what);
+  }
+
+  std::vector<std::pair<std::string, std::size_t>> splits_in_order() const {
+    std::vector<std::pair<std::string, std::size_t>> splits;
+    const json& shards = manifest_.at("shards");
+    for (std::size_t s = 0; s < shards.size(); ++s) {
+      const std::string split = shards[s].at("split");
+      if (splits.empty() || splits.back().first != split) splits.emplace_back(split, s);
+    }
+    return splits;
+  }
+
+  void check_split(const std::string& split, std::size_t first_shard, Sha256& root) {
+    std::vector<std::string> lines;
+    std::ifstream metadata(folder_ / split / "metadata.jsonl");
+    for (std::string line; std::getline(metadata, line);) lines.push_back(line);
+    const auto expected = manifest_.at("counts").at(split).get<std::size_t>();
+    if (lines.size() != expected) {
+      fault(fmt::format("{}/metadata.jsonl has {} lines, {} expected", split, lines.size(), expected));
+      return;
+    }
+    std::vector<std::string> hashes(lines.size());
+    const json& shards = manifest_.at("shards");
+    std::size_t last_shard = first_shard;
+    while (last_shard < shards.size() && shards[last_shard].at("split") == split) ++last_shard;
+    std::vector<std::size_t> starts{0};
+    for (std::size_t s = first_shard; s < last_shard; ++s) {
+      starts.push_back(starts.back() + shards[s].at("frames").get<std::size_t>());
+    }
+    if (starts.back() != lines.size()) {
+      fault(fmt::format("{}: the shards of the manifest hold {} frames, not {}", split, starts.back(), lines.size()));
+      return;
+    }
+    const bool tars = manifest_.at("format") == "webdataset";
+    parallel_for(static_cast<int>(last_shard - first_shard), [&](int s) {
+      const auto number = static_cast<std::size_t>(s);
+      try {
+        if (tars) check_tar(split, s, starts[number], starts[number + 1], lines, hashes);
+        else for (std::size_t i = starts[number]; i < starts[number + 1]; ++i) check_files(split, i, lines[i], hashes[i]);
+      } catch (const Error& e) {
+        fault(e.what());
+      }
+      Sha256 shard_hash;
+      for (std::size_t i = starts[number]; i < starts[number + 1]; ++i) shard_hash.add(std::string_view(hashes[i]));
+      if (shard_hash.hex() != shards[first_shard + number].at("sha256")) {
+        fault(fmt::format("{}: frames {} to {} differ from the manifest", split, starts[number], starts[number + 1] - 1));
+      }
+    });
+    for (const std::string& hash : hashes) root.add(std::string_view(hash));
+  }
+
+  void check_frame(const FrameImages& images, const std::string& what, const std::string& line, std::string& hash) {
+    const std::string wrong = image_fault(images, threshold_, bins_, beams_);
+    if (!wrong.empty()) fault(fmt::format("{}: {}", what, wrong));
+    hash = content_hash(images.at("raw"), images.at("clean"), images.at("mask"), images.at("labels"), line);
+    const std::scoped_lock lock(mutex_);
+    on_progress_(++report_.frames, total_);
+  }
+
+  void check_files(const std::string& split, std::size_t number, const std::string& line, std::string& hash) {
+    FrameImages images;
+    for (const char* kind : kinds) images[kind] = read_png(folder_ / split / kind / fmt::format("{:06}.png", number));
+    check_frame(images, fmt::format("{} {:06}", split, number), line, hash);
+  }
+
+  void check_tar(const std::string& split, int shard, std::size_t first, std::size_t last,
+                 const std::vector<std::string>& lines, std::vector<std::string>& hashes) {
+    const fs::path path = folder_ / split / fmt::format("{}-{:06}.tar", split, shard);
+    FrameImages images;
+    std::size_t number = first;
+    read_tar(path, [&](const std::string& member, const std::vector<std::uint8_t>& bytes) {
+      if (number >= last) throw DataError(fmt::format("{}: more frames than the manifest says", path.string()));
+      const std::string stem = fmt::format("{:06}.", number);
+      if (!member.starts_with(stem)) throw DataError(fmt::format("{}: unexpected member {}", path.string(), member));
+      const std::string kind = member.substr(stem.size(), member.find('.', stem.size()) - stem.size());
+      if (kind != "json") {
+        images[kind] = decode_png(bytes, path / member);
+        return;
+      }
+      if (images.size() != kinds.size()) throw DataError(fmt::format("{}: {} lacks images", path.string(), member));
+      check_frame(images, fmt::format("{} {:06}", split, number), lines[number], hashes[number]);
+      images.clear();
+      ++number;
+    });
+    if (number != last) fault(fmt::format("{}: frames are missing", path.string()));
+  }
+
+  void check_grids(Sha256& root) {
+    for (const json& entry : manifest_.at("grids")) {
+      const std::string file = entry.at("file");
+      try {
+        const OccupancyGrid grid = read_grid(folder_ / file);
+        const std::string hash = Sha256().add(grid.occupancy).add(grid.observable).hex();
+        if (hash != entry.at("sha256")) fault(fmt::format("{} differs from the manifest", file));
+        root.add(std::string_view(hash));
+        for (const char* extension : {".bt", ".pgm", ".yaml"}) {
+          const fs::path sibling = fs::path(folder_ / file).replace_extension(extension);
+          if (!fs::is_regular_file(sibling)) fault(fmt::format("{} is missing", sibling.string()));
+        }
+        ++report_.grids;
+      } catch (const Error& e) {
+        fault(e.what());
+      }
+    }
+  }
+
+  fs::path folder_;
+  std::function<void(int, int)> on_progress_;
+  json manifest_;
+  int threshold_ = 0;
+  int beams_ = 0;
+  int bins_ = 0;
+  int total_ = 0;
+  VerifyReport report_;
+  std::mutex mutex_;
+};
+
+}  // namespace
+
+VerifyReport verify_dataset(const fs::path& folder, const std::function<void(int, int)>& on_progress) {
+  Verifier verifier(folder, on_progress);
+  try {
+    return verifier.run();
+  } catch (const json::exception& e) {
+    throw DataError(fmt::format("{}: broken manifest: {}", (folder / "dataset.json").string(), e.what()));
+  }
+}
+
+}  // namespace ensonify

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+
+#include "ensonify/core/occupancy_grid.hpp"
+
+namespace ensonify {
+
+/// OctoMap binary tree (.bt; Hornung et al. 2013): surface and interior occupied, free cells explicit, pruned. With
+/// `unobserved_is_unknown` cells that no ping observed are left out. OctoMap's cells begin at multiples of the
+/// resolution and there are 65536 on an axis, centred on 0: throws ConfigError for a grid that does not fit this.
+void write_grid_octomap(const OccupancyGrid& grid, const std::filesystem::path& path, bool unobserved_is_unknown);
+
+}  // namespace ensonify

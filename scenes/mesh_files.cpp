@@ -8,6 +8,7 @@
 #include <array>
 #include <cctype>
 #include <cstring>
+#include <string_view>
 #include <vector>
 
 #include "ensonify/core/error.hpp"
@@ -66,13 +67,13 @@ std::string format_name(MeshFormat format) {
 void keep_only_importers_of(MeshFormat format, Assimp::Importer& importer) {
   std::vector<Assimp::BaseImporter*> others;
   for (std::size_t i = 0; i < importer.GetImporterCount(); ++i) {
-    const char* extensions = importer.GetImporterInfo(i)->mFileExtensions;
+    const aiImporterDesc& info = *importer.GetImporterInfo(i);
     const bool wanted = std::any_of(known.begin(), known.end(), [&](const Known& k) {
-      if (k.format != format) return false;
-      const std::string list = fmt::format(" {} ", extensions);
-      return list.find(fmt::format(" {} ", k.extension)) != std::string::npos;
+      const std::string list = fmt::format(" {} ", info.mFileExtensions);
+      return k.format == format && list.find(fmt::format(" {} ", k.extension)) != std::string::npos;
     });
-    if (!wanted) others.push_back(importer.GetImporter(i));
+    // glTF 1 shares its extensions with glTF 2 and has a reader of its own.
+    if (!wanted || std::string_view(info.mName) == "glTF Importer") others.push_back(importer.GetImporter(i));
   }
   for (Assimp::BaseImporter* other : others) {
     importer.UnregisterLoader(other);

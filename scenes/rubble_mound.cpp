@@ -37,7 +37,8 @@ Assembly build_rubble_mound(const RubbleMound& mound, const ScatterGround& groun
   rocks.overlap = true;
   const double toe_m = 0.5 * mound.crest_width_m + foot_width_m(mound) + 0.5;
   rocks.area_m =
-      Eigen::AlignedBox2d(Eigen::Vector2d(-0.5 * mound.length_m, -toe_m), Eigen::Vector2d(0.5 * mound.length_m, toe_m));
+      Eigen::AlignedBox2d(Eigen::Vector2d(-0.5 * mound.length_m, -toe_m),
+                          Eigen::Vector2d(0.5 * mound.length_m, mound.one_sided ? 0.5 * mound.crest_width_m : toe_m));
   const ScatterGround top{
       [&](double x_m, double y_m) { return std::max(mound_height_m(mound, x_m, y_m), ground.height_m(x_m, y_m)); },
       ground.path_m};

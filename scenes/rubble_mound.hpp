@@ -11,6 +11,7 @@ struct RubbleMound {
   double crest_width_m = 2;
   double height_m = 5;
   double slope_rad = 0.6;  ///< of both sides, from the horizontal
+  bool one_sided = false;  ///< rocks on the slope towards -y only
   BoulderScatter rocks;    ///< its area is set to the footprint, it overlaps, and it rests on core and seabed
 };
 

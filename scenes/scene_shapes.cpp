@@ -118,6 +118,7 @@ Assembly build_rubble(const Request& r) {
   mound.crest_width_m = r.length("crest_width_m");
   mound.height_m = r.length("height_m");
   mound.slope_rad = r.field.angle_or("slope_deg", 34, {5, 80});
+  mound.one_sided = r.field.reader.boolean_or("one_sided", false);
   mound.rocks = read_rocks(r, "rocks");
   return build_rubble_mound(mound, r.ground, r.key);
 }

@@ -158,7 +158,8 @@ TEST(BoulderScatter, StonesLieApartAndClearOfThePath) {
 }
 
 TEST(RubbleMound, CoreIsClosedAndHasTheVolumeOfItsSection) {
-  RubbleMound mound{.length_m = 10, .crest_width_m = 2, .height_m = 3, .slope_rad = pi / 4, .rocks = {}};
+  RubbleMound mound{
+      .length_m = 10, .crest_width_m = 2, .height_m = 3, .slope_rad = pi / 4, .one_sided = false, .rocks = {}};
   const ScatterGround ground{[](double, double) { return -3.0; }, {}};
   const Assembly rubble = build_rubble_mound(mound, ground, RandomKey::from_seed(1));
   expect_closed(rubble.meshes.back(), 10 * 3 * 0.5 * (2 + 8), 1e-5);

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "ensonify/core/pose.hpp"
+#include "ensonify/scenes/scene.hpp"
+
+namespace ensonify::cli {
+
+/// "x y z roll pitch yaw", metres and degrees, blanks or commas between. Throws ConfigError.
+Pose parse_pose(const std::string& text);
+
+/// A scene YAML, a bundled name, or a mesh file by itself (any other extension). Its warnings go to standard error.
+Scene open_scene(const std::string& path_or_name, std::uint64_t layout);
+
+}  // namespace ensonify::cli

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+namespace ensonify::cli {
+
+/// Each adds one subcommand; its callback does the work and throws `Error`, or `ExitCode` to end with another code.
+void add_generate(CLI::App& app);
+void add_ping(CLI::App& app);
+void add_scene(CLI::App& app);
+void add_sonar(CLI::App& app);
+void add_verify(CLI::App& app);
+void add_voxelize(CLI::App& app);
+
+/// Ends the program with this code, silently.
+struct ExitCode {
+  int code = 0;
+};
+
+}  // namespace ensonify::cli

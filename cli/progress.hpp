@@ -1,0 +1,30 @@
+#pragma once
+
+#include <chrono>
+#include <string>
+
+namespace ensonify::cli {
+
+enum class ProgressStyle { automatic, json, none };
+
+/// Shows how far a long work is, on standard error: a bar with rate and time left on a terminal, a line every few
+/// seconds otherwise, or one JSON object a line. Not for several threads at once.
+class ProgressLine {
+ public:
+  explicit ProgressLine(ProgressStyle style);
+
+  /// `fresh`: done in this run, which the rate counts. A new stage starts the clock anew.
+  void show(const std::string& stage, int done, int fresh, int total);
+
+ private:
+  using Clock = std::chrono::steady_clock;
+  ProgressStyle style_;
+  bool terminal_;
+  std::string stage_;
+  Clock::time_point start_;
+  Clock::time_point shown_;
+};
+
+ProgressStyle parse_progress_style(const std::string& word);
+
+}  // namespace ensonify::cli

@@ -128,7 +128,8 @@ std::vector<FrameRecord> read_block_record(const DatasetPaths& paths, const Bloc
   if (!std::filesystem::is_regular_file(file, error)) return {};
   std::vector<FrameRecord> records;
   try {
-    for (const json& frame : json::parse(read_text(file)).at("frames")) {
+    const json record = json::parse(read_text(file));
+    for (const json& frame : record.at("frames")) {
       records.push_back({frame.at("index"), frame.at("sha256"), frame.at("line")});
     }
   } catch (const json::exception& e) {

@@ -186,6 +186,9 @@ void mark_observed(const PingTruth& truth, const SonarGeometry& geometry, const 
     throw ConfigError("ping truth: first_hit_range_m must have one row an elevation ray and one column an azimuth ray");
   }
   if (geometry.beams() == 0) throw ConfigError("sonar geometry: no beams; give at least one azimuth");
+  if (!T_world_sonar.matrix().allFinite()) {
+    throw ConfigError("sonar pose: not a number in it; check where the pose comes from");
+  }
   if (grid.occupancy.size() != grid.frame.cells()) {
     throw ConfigError("occupancy grid: its number of cells does not match its frame; voxelise the scene first");
   }

@@ -156,21 +156,32 @@ void mark_free(const PingTruth& truth, const Frustum& frustum, const Pose& T_wor
 }
 
 void mark_hits(const PingTruth& truth, const Frustum& frustum, const Pose& T_world_sonar, OccupancyGrid& grid) {
-  std::vector<std::pair<double, double>> cos_sin_azimuth;
-  for (const double azimuth : truth.ray_azimuth_rad) cos_sin_azimuth.emplace_back(std::cos(azimuth), std::sin(azimuth));
+  // In cells of the grid; a ray is a sum of its column's and its row's vectors.
+  const Eigen::Matrix3d axes = T_world_sonar.linear() / grid.frame.resolution_m;
+  const Vec3 sonar = (T_world_sonar.translation() - grid.frame.origin_m) / grid.frame.resolution_m;
+  const Vec3 beyond(grid.frame.size[0], grid.frame.size[1], grid.frame.size[2]);
+  struct Column {
+    int index;
+    Vec3 ahead;
+  };
+  std::vector<Column> columns;
+  for (int c = 0; c < truth.first_hit_range_m.columns(); ++c) {
+    const double azimuth = truth.ray_azimuth_rad[c];
+    if (!frustum.holds_direction(azimuth, 0)) continue;
+    columns.push_back({c, axes * Vec3(std::cos(azimuth), std::sin(azimuth), 0)});
+  }
   for (int r = 0; r < truth.first_hit_range_m.rows(); ++r) {
     const double elevation = truth.ray_elevation_rad[r];
+    if (std::abs(elevation) > frustum.elevation_max_rad) continue;
     const double cos_elevation = std::cos(elevation);
-    const double sin_elevation = std::sin(elevation);
-    for (int c = 0; c < truth.first_hit_range_m.columns(); ++c) {
-      const double range = truth.first_hit_range_m(r, c);
+    const Vec3 up = std::sin(elevation) * axes.col(2);
+    for (const Column& column : columns) {
+      const double range = truth.first_hit_range_m(r, column.index);
       if (!(range >= frustum.range_min_m && range <= frustum.range_max_m)) continue;
-      if (!frustum.holds_direction(truth.ray_azimuth_rad[c], elevation)) continue;
-      const auto& [cos_azimuth, sin_azimuth] = cos_sin_azimuth[c];
-      const Vec3 hit_sonar = range * Vec3(cos_elevation * cos_azimuth, cos_elevation * sin_azimuth, sin_elevation);
-      const auto [x, y, z] = grid.frame.cell_of(T_world_sonar * hit_sonar);
-      if (!grid.frame.contains(x, y, z)) continue;
-      const std::size_t cell = grid.frame.index(x, y, z);
+      const Vec3 hit = sonar + range * (cos_elevation * column.ahead + up);
+      if (!((hit.array() >= 0).all() && (hit.array() < beyond.array()).all())) continue;
+      const std::size_t cell =
+          grid.frame.index(static_cast<int>(hit.x()), static_cast<int>(hit.y()), static_cast<int>(hit.z()));
       if (grid.occupancy[cell] == static_cast<std::uint8_t>(Occupancy::surface)) grid.observable[cell] = 1;
     }
   }
@@ -186,6 +197,9 @@ void mark_observed(const PingTruth& truth, const SonarGeometry& geometry, const 
     throw ConfigError("ping truth: first_hit_range_m must have one row an elevation ray and one column an azimuth ray");
   }
   if (geometry.beams() == 0) throw ConfigError("sonar geometry: no beams; give at least one azimuth");
+  if (!T_world_sonar.matrix().allFinite()) {
+    throw ConfigError("sonar pose: not a number in it; check where the pose comes from");
+  }
   if (grid.occupancy.size() != grid.frame.cells()) {
     throw ConfigError("occupancy grid: its number of cells does not match its frame; voxelise the scene first");
   }

@@ -10,14 +10,15 @@ namespace {
 
 constexpr double half_cell = 0.5 + surface_margin_cells;
 
-/// p * m_p + q * m_q + k >= 0 for cell indices (p, q): the cell's square is not wholly outside this edge.
+/// p * m_p + q * m_q + k is below 0 for cell indices (p, q) where the cell's square is wholly outside of this edge.
 struct EdgeTest {
   double m_p, m_q, k;
-  bool pass(double p, double q) const { return m_p * p + m_q * q + k >= 0; }
+  double value(double p, double q) const { return m_p * p + m_q * q + k; }
 };
 
 /// The three edges of a triangle seen along the axis that is neither p nor q.
-std::array<EdgeTest, 3> edge_tests(const std::array<Vec3, 3>& corner, int p, int q) {
+template <int p, int q>
+std::array<EdgeTest, 3> edge_tests(const std::array<Vec3, 3>& corner) {
   const double area = (corner[1][p] - corner[0][p]) * (corner[2][q] - corner[0][q]) -
                       (corner[1][q] - corner[0][q]) * (corner[2][p] - corner[0][p]);
   const double sign = area < 0 ? -1.0 : 1.0;
@@ -35,7 +36,8 @@ std::array<EdgeTest, 3> edge_tests(const std::array<Vec3, 3>& corner, int p, int
 }
 
 bool pass_all(const std::array<EdgeTest, 3>& tests, double p, double q) {
-  return tests[0].pass(p, q) && tests[1].pass(p, q) && tests[2].pass(p, q);
+  // One branch for three: which of them fails is a toss-up, and a wrong guess costs more than the arithmetic.
+  return std::min({tests[0].value(p, q), tests[1].value(p, q), tests[2].value(p, q)}) >= 0;
 }
 
 /// Largest component of the normal: along it the triangle is thinnest.
@@ -55,16 +57,16 @@ bool normal_is_sure(const std::array<Vec3, 3>& corner, const Vec3& n) {
 
 using Cell = std::array<int, 3>;
 
-/// Marks the cells of the block first .. first + extent - 1 that the triangle touches, by columns along the dominant
-/// axis. Corners relative to the block.
-void mark_by_columns(const std::array<Vec3, 3>& corner, const Cell& first, const Cell& extent, BitGrid& surface) {
-  const Vec3 n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
-  const int w = dominant_axis(n);
-  const int u = (w + 1) % 3;
-  const int v = (w + 2) % 3;
-  const auto tests_uv = edge_tests(corner, u, v);
-  const auto tests_vw = edge_tests(corner, v, w);
-  const auto tests_wu = edge_tests(corner, w, u);
+/// Marks the cells of the block first .. first + extent - 1 that the triangle touches, by columns along axis w, the
+/// dominant one of the normal n. Corners relative to the block.
+template <int w>
+void mark_by_columns(const std::array<Vec3, 3>& corner, const Vec3& n, const Cell& first, const Cell& extent,
+                     BitGrid& surface) {
+  constexpr int u = (w + 1) % 3;
+  constexpr int v = (w + 2) % 3;
+  const auto tests_uv = edge_tests<u, v>(corner);
+  const auto tests_vw = edge_tests<v, w>(corner);
+  const auto tests_wu = edge_tests<w, u>(corner);
 
   const bool has_plane = normal_is_sure(corner, n);
   const double inverse = has_plane ? 1.0 / n[w] : 0.0;
@@ -112,7 +114,13 @@ void mark_triangle(std::array<Vec3, 3> corner, BitGrid& surface) {
     for (Vec3& c : corner) c[a] -= surface.low[a] + first[a];
   }
   // Inside a single row of cells a connected thing touches every cell between its ends.
-  if (thin_axes < 2) return mark_by_columns(corner, first, extent, surface);
+  if (thin_axes < 2) {
+    const Vec3 n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    const int w = dominant_axis(n);
+    if (w == 0) return mark_by_columns<0>(corner, n, first, extent, surface);
+    if (w == 1) return mark_by_columns<1>(corner, n, first, extent, surface);
+    return mark_by_columns<2>(corner, n, first, extent, surface);
+  }
   for (int z = 0; z < extent[2]; ++z) {
     for (int y = 0; y < extent[1]; ++y) {
       for (int x = 0; x < extent[0]; ++x) surface.set(first[0] + x, first[1] + y, first[2] + z);

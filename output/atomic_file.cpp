@@ -44,7 +44,8 @@ Bytes read_bytes(const fs::path& path, std::size_t max_bytes) {
   std::error_code error;
   const auto size = fs::file_size(path, error);
   if (error) throw DataError(fmt::format("{}: can not be read: {}", path.string(), error.message()));
-  if (size > max_bytes) throw DataError(fmt::format("{}: {} bytes is more than the {} allowed", path.string(), size, max_bytes));
+  if (size > max_bytes)
+    throw DataError(fmt::format("{}: {} bytes is more than the {} allowed", path.string(), size, max_bytes));
   Bytes bytes(size, {});
   std::ifstream in(path, std::ios::binary);
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
@@ -57,7 +58,8 @@ Bytes read_bytes(const fs::path& path, std::size_t max_bytes) {
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   std::error_code error;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-  if (error) throw DataError(fmt::format("{}: folder can not be made: {}", path.parent_path().string(), error.message()));
+  if (error)
+    throw DataError(fmt::format("{}: folder can not be made: {}", path.parent_path().string(), error.message()));
   const fs::path temporary = path.parent_path() / fmt::format(".{}.tmp-{}", path.filename().string(), ::getpid());
   try {
     write(temporary);

@@ -42,10 +42,11 @@ std::size_t bytes_of(const std::string& type) {
 }
 
 std::string read_header(std::string_view bytes, Header& header) {
-  const std::size_t end = bytes.substr(0, 1 << 20).find("end_header");
+  // The last line must be just this: a parser that does not see it there reads on into the body.
+  const std::string_view start = bytes.substr(0, 1 << 20);
+  const std::size_t end = std::min(start.find("\nend_header\n"), start.find("\nend_header\r\n"));
   if (!bytes.starts_with("ply") || end == std::string_view::npos) return "it has no PLY header";
-  const std::size_t line_end = bytes.find('\n', end);
-  header.body = line_end == std::string_view::npos ? bytes.size() : line_end + 1;
+  header.body = bytes.find('\n', end + 1) + 1;
   std::set<std::string> names;
   std::istringstream lines{std::string(bytes.substr(0, end))};
   for (std::string line; std::getline(lines, line);) {

@@ -20,8 +20,9 @@ namespace fs = std::filesystem;
   throw DataError(fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
 }
 
-void write_bytes(const fs::path& path, const void* data, std::size_t size) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+/// `path` is what the message names; the bytes go to `temporary`.
+void write_bytes(const fs::path& path, const fs::path& temporary, const void* data, std::size_t size) {
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) fail(path, "can not be written");
   const char* next = static_cast<const char*>(data);
   while (size > 0) {
@@ -74,11 +75,11 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
 }
 
 void write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
-  write_atomically(path, [&](const fs::path& temporary) { write_bytes(temporary, bytes.data(), bytes.size()); });
+  write_atomically(path, [&](const fs::path& temporary) { write_bytes(path, temporary, bytes.data(), bytes.size()); });
 }
 
 void write_file(const fs::path& path, std::string_view text) {
-  write_atomically(path, [&](const fs::path& temporary) { write_bytes(temporary, text.data(), text.size()); });
+  write_atomically(path, [&](const fs::path& temporary) { write_bytes(path, temporary, text.data(), text.size()); });
 }
 
 std::vector<std::uint8_t> read_file(const fs::path& path, std::size_t max_bytes) {

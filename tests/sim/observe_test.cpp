@@ -94,8 +94,8 @@ TEST(Observe, SameAsTheDefinitionCellByCell) {
     const Spherical s = to_spherical(pose.inverse() * grid.frame.centre_m(x, y, z));
     const auto nearest = [](int count, const auto& angle_of, double angle) {
       int best = 0;
-      for (int i = 1; i < count; ++i) {
-        if (std::abs(angle_of(i) - angle) < std::abs(angle_of(best) - angle)) best = i;
+      for (int k = 1; k < count; ++k) {
+        if (std::abs(angle_of(k) - angle) < std::abs(angle_of(best) - angle)) best = k;
       }
       return best;
     };

@@ -25,8 +25,8 @@ void observe_ping(benchmark::State& state) {
     geometry.beam_azimuth_rad.push_back(azimuth);
     truth.ray_azimuth_rad.push_back(static_cast<float>(azimuth));
   }
-  for (int i = 0; i < 64; ++i)
-    truth.ray_elevation_rad.push_back(static_cast<float>(radians(12) * ((i + 0.5) / 64 - 0.5)));
+  truth.elevation_step_rad = static_cast<float>(radians(12) / 64);
+  truth.lowest_elevation_rad.assign(512, static_cast<float>(radians(12) * (0.5 / 64 - 0.5)));
   truth.first_hit_range_m = Image2<float>(64, 512, 4.0F);
   OccupancyGrid grid;
   const double cell_m = 1e-3 * static_cast<double>(state.range(0));

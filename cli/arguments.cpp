@@ -22,9 +22,10 @@ Pose parse_pose(const std::string& text) {
   for (double number = 0; in >> number;) v.push_back(number);
   const bool finite = std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
   if (!in.eof() || v.size() != 6 || !finite) {
-    throw ConfigError(fmt::format("--pose \"{}\": must be six numbers, \"x y z roll pitch yaw\", metres and degrees "
-                                  "(z up, 0 at the water surface; positive pitch is nose down)",
-                                  text));
+    throw ConfigError(
+        fmt::format("--pose \"{}\": must be six numbers, \"x y z roll pitch yaw\", metres and degrees "
+                    "(z up, 0 at the water surface; positive pitch is nose down)",
+                    text));
   }
   return pose_from_xyz_rpy({v[0], v[1], v[2]}, radians(v[3]), radians(v[4]), radians(v[5]));
 }

@@ -49,7 +49,8 @@ void set_shard(const std::string& text, GenerateOptions& options) {
 
 /// What someone types to get the same dataset.
 std::string command_line(const Arguments& a, const Recipe& recipe) {
-  std::string line = fmt::format("ensonify generate {} --seed {} --isa {} --format {}", a.recipe, recipe.seed, a.isa, a.format);
+  std::string line =
+      fmt::format("ensonify generate {} --seed {} --isa {} --format {}", a.recipe, recipe.seed, a.isa, a.format);
   if (a.pairs > 0) line += fmt::format(" --pairs {}", a.pairs);
   return line + " --out DIR";
 }
@@ -77,7 +78,8 @@ void run(const Arguments& arguments) {
   options.stopped = [] { return caught_signal() != 0; };
   switch (generate(recipe, options)) {
     case Outcome::complete:
-      fmt::print("{} frames in {}; check them with: ensonify verify {}\n", recipe.frames(), arguments.out, arguments.out);
+      fmt::print("{} frames in {}; check them with: ensonify verify {}\n", recipe.frames(), arguments.out,
+                 arguments.out);
       break;
     case Outcome::shard_done:
       fmt::print("shard {} done; the dataset is finished by whichever shard comes last\n", arguments.shard);
@@ -109,7 +111,8 @@ void add_generate(CLI::App& app) {
       ->check(CLI::IsMember({"avx2", "avx512", "sse4.2", "sse2", "auto"}));
   command->add_option("--progress", a->progress, "auto, json or none")->check(CLI::IsMember({"auto", "json", "none"}));
   command->add_flag("--force", a->force, "Replace a dataset of another recipe in --out");
-  command->footer("Example:\n  ensonify generate quick --out out/quick\n  ensonify generate paper --seed 7 --out out/paper7");
+  command->footer(
+      "Example:\n  ensonify generate quick --out out/quick\n  ensonify generate paper --seed 7 --out out/paper7");
   command->callback([a] { run(*a); });
 }
 

@@ -10,13 +10,15 @@
 
 int main(int argc, char** argv) {
   using namespace ensonify;
-  CLI::App app("ensonify simulates multibeam imaging sonars on the CPU: scenes in, sonar images with masks, labels and\n"
-               "occupancy truth out.");
+  CLI::App app(
+      "ensonify simulates multibeam imaging sonars on the CPU: scenes in, sonar images with masks, labels and\n"
+      "occupancy truth out.");
   app.name("ensonify");
   app.set_version_flag("--version", std::string("ensonify ") + ENSONIFY_VERSION);
   app.require_subcommand(1);
-  app.footer("Example:\n  ensonify ping test_tank --sonar oculus_m1200d_hf --pose \"1.0 0 -1.5 0 10 0\" --out out/ping\n\n"
-             "Exit codes: 0 done, 1 the work failed (data, disk), 2 wrong usage or configuration, 130/143 stopped.");
+  app.footer(
+      "Example:\n  ensonify ping test_tank --sonar oculus_m1200d_hf --pose \"1.0 0 -1.5 0 10 0\" --out out/ping\n\n"
+      "Exit codes: 0 done, 1 the work failed (data, disk), 2 wrong usage or configuration, 130/143 stopped.");
   cli::add_generate(app);
   cli::add_ping(app);
   cli::add_scene(app);

@@ -41,11 +41,12 @@ RangeWindow window_of(const Arguments& a) {
 nlohmann::json summary(const PingImages& images, const PingTruth& truth, const SonarGeometry& geometry) {
   const auto mask = images.mask.pixels();
   const auto first = std::find(mask.begin(), mask.end(), 255);
-  const auto nearest_hit = std::min_element(truth.first_hit_range_m.pixels().begin(), truth.first_hit_range_m.pixels().end());
-  nlohmann::json result{{"mask_share", static_cast<double>(std::count(mask.begin(), mask.end(), 255)) /
-                                           static_cast<double>(mask.size())},
-                        {"first_echo_range_m", nullptr},
-                        {"nearest_surface_m", nullptr}};
+  const auto nearest_hit =
+      std::min_element(truth.first_hit_range_m.pixels().begin(), truth.first_hit_range_m.pixels().end());
+  nlohmann::json result{
+      {"mask_share", static_cast<double>(std::count(mask.begin(), mask.end(), 255)) / static_cast<double>(mask.size())},
+      {"first_echo_range_m", nullptr},
+      {"nearest_surface_m", nullptr}};
   if (first != mask.end()) {
     const auto row = static_cast<int>((first - mask.begin()) / images.mask.columns());
     result["first_echo_range_m"] = geometry.bin_centre_m(row);
@@ -65,8 +66,7 @@ void run(const Arguments& a) {
   const RandomKey key = RandomKey::from_seed(a.seed);
   SampledValues sampled;
   const ImageSettings settings{sample_noise(profile, key.child("noise parameters"), sampled), 0.0, 8};
-  const PingImages images =
-      form_images(sonar, PointSpread(sonar), ping.echo, ping.truth, settings, key.child("noise"));
+  const PingImages images = form_images(sonar, PointSpread(sonar), ping.echo, ping.truth, settings, key.child("noise"));
 
   const std::filesystem::path out = a.out;
   write_file(out / "raw.png", encode_png(images.raw.grey));
@@ -77,9 +77,12 @@ void run(const Arguments& a) {
   write_exr(out / "echo.exr", {{"direct", ping.echo.direct}}, truth_comment);
   write_exr(out / "truth.exr", truth_channels(ping.echo, ping.truth), truth_comment);
 
-  nlohmann::json record{{"scene", scene.name},         {"layout", scene.layout},
-                        {"sonar", describe(sonar)},    {"noise", describe(profile)},
-                        {"seed", a.seed},              {"isa", a.isa},
+  nlohmann::json record{{"scene", scene.name},
+                        {"layout", scene.layout},
+                        {"sonar", describe(sonar)},
+                        {"noise", describe(profile)},
+                        {"seed", a.seed},
+                        {"isa", a.isa},
                         {"mask", {{"threshold", settings.mask_threshold}}},
                         {"T_world_sonar", describe(T_world_sonar)},
                         {"water",
@@ -92,7 +95,8 @@ void run(const Arguments& a) {
 
   fmt::print("{} x {} pixels in {}: mask {:.1f} %, nearest surface {} m\n", images.raw.grey.rows(),
              images.raw.grey.columns(), a.out, 100.0 * record["mask_share"].get<double>(),
-             record["nearest_surface_m"].is_null() ? "none" : fmt::format("{:.2f}", record["nearest_surface_m"].get<double>()));
+             record["nearest_surface_m"].is_null() ? "none"
+                                                   : fmt::format("{:.2f}", record["nearest_surface_m"].get<double>()));
 }
 
 }  // namespace
@@ -100,13 +104,17 @@ void run(const Arguments& a) {
 void add_ping(CLI::App& app) {
   auto* command = app.add_subcommand("ping", "Simulate one ping and write its images and truth");
   auto a = std::make_shared<Arguments>();
-  command->add_option("SCENE", a->scene, "Scene YAML, bundled name (see: ensonify scene list), or a mesh file")->required();
-  command->add_option("--sonar", a->sonar, "Sonar YAML or bundled name (see: ensonify sonar list)")->required();
-  command->add_option("--pose", a->pose,
-                      "\"x y z roll pitch yaw\" of the sonar: metres (z up, 0 at the surface) and degrees "
-                      "(positive pitch is nose down)")
+  command->add_option("SCENE", a->scene, "Scene YAML, bundled name (see: ensonify scene list), or a mesh file")
       ->required();
-  command->add_option("--out", a->out, "Folder for raw.png clean.png mask.png labels.png fan.png echo.exr truth.exr ping.json")
+  command->add_option("--sonar", a->sonar, "Sonar YAML or bundled name (see: ensonify sonar list)")->required();
+  command
+      ->add_option("--pose", a->pose,
+                   "\"x y z roll pitch yaw\" of the sonar: metres (z up, 0 at the surface) and degrees "
+                   "(positive pitch is nose down)")
+      ->required();
+  command
+      ->add_option("--out", a->out,
+                   "Folder for raw.png clean.png mask.png labels.png fan.png echo.exr truth.exr ping.json")
       ->required();
   command->add_option("--noise", a->noise, "Noise YAML or bundled name: paper, none")->capture_default_str();
   command->add_option("--seed", a->seed, "Seed of the noise")->capture_default_str();
@@ -116,9 +124,10 @@ void add_ping(CLI::App& app) {
       ->check(CLI::IsMember({"native"}) | CLI::Range(1, 16384));
   command->add_option("--isa", a->isa, "Instruction set of the ray caster")
       ->check(CLI::IsMember({"avx2", "avx512", "sse4.2", "sse2", "auto"}));
-  command->footer("Example:\n"
-                  "  ensonify ping test_tank --sonar oculus_m1200d_hf --pose \"1.0 0 -1.5 0 10 0\" --out out/ping\n"
-                  "  ensonify ping glider.dae --sonar oculus_m1200d_hf --pose \"-3 0 -50 0 0 0\" --out out/glider");
+  command->footer(
+      "Example:\n"
+      "  ensonify ping test_tank --sonar oculus_m1200d_hf --pose \"1.0 0 -1.5 0 10 0\" --out out/ping\n"
+      "  ensonify ping glider.dae --sonar oculus_m1200d_hf --pose \"-3 0 -50 0 0 0\" --out out/glider");
   command->callback([a] { run(*a); });
 }
 

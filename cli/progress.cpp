@@ -14,7 +14,8 @@ constexpr int bar_width = 30;
 
 std::string time_text(double seconds) {
   const int s = static_cast<int>(seconds + 0.5);
-  return s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60) : fmt::format("{}:{:02}", s / 60, s % 60);
+  return s >= 3600 ? fmt::format("{}:{:02}:{:02}", s / 3600, s / 60 % 60, s % 60)
+                   : fmt::format("{}:{:02}", s / 60, s % 60);
 }
 
 }  // namespace
@@ -43,7 +44,8 @@ void ProgressLine::show(const std::string& stage, int done, int fresh, int total
   const double left_s = rate > 0.0 ? (total - done) / rate : 0.0;
   if (style_ == ProgressStyle::json) {
     fmt::print(std::cerr, "{}\n",
-               nlohmann::json{{"stage", stage}, {"done", done}, {"total", total}, {"rate_hz", rate}, {"eta_s", left_s}}.dump());
+               nlohmann::json{{"stage", stage}, {"done", done}, {"total", total}, {"rate_hz", rate}, {"eta_s", left_s}}
+                   .dump());
   } else if (live) {
     const int filled = static_cast<int>(static_cast<double>(bar_width) * done / total);
     fmt::print(std::cerr, "\r{} [{:=<{}}{:<{}}] {}/{}  {:.0f}/s  {} left \033[K{}", stage, "", filled, "",

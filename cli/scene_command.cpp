@@ -37,11 +37,12 @@ void check(const std::string& path_or_name, std::uint64_t layout) {
     }
   }
   const VoxelTruth truth = voxelize(scene, scene.grid_resolution_m);
-  fmt::print("{}: {}\n  {} objects, {} meshes, {} triangles\n  extent     {}\n  bounds     {}\n  navigable  {}\n"
-             "  grid       {} x {} x {} cells of {} m\n  water      {:.1f} m/s\n",
-             scene.name, scene.title, scene.instances.size(), scene.meshes.size(), triangles(scene), box(extent),
-             box(scene.bounds_m), box(scene.navigable_m), truth.grid.frame.size[0], truth.grid.frame.size[1],
-             truth.grid.frame.size[2], truth.grid.frame.resolution_m, sound_speed_mps(scene.water));
+  fmt::print(
+      "{}: {}\n  {} objects, {} meshes, {} triangles\n  extent     {}\n  bounds     {}\n  navigable  {}\n"
+      "  grid       {} x {} x {} cells of {} m\n  water      {:.1f} m/s\n",
+      scene.name, scene.title, scene.instances.size(), scene.meshes.size(), triangles(scene), box(extent),
+      box(scene.bounds_m), box(scene.navigable_m), truth.grid.frame.size[0], truth.grid.frame.size[1],
+      truth.grid.frame.size[2], truth.grid.frame.resolution_m, sound_speed_mps(scene.water));
   std::size_t at = 0;
   for (const Instance& instance : scene.instances) {
     if (!instance.obstacle) continue;

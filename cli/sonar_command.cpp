@@ -11,24 +11,25 @@ namespace ensonify::cli {
 namespace {
 
 void list() {
-  for (const std::string& name : library_names("sensor_models")) fmt::print("{:<20} {}\n", name, load_sonar(name).title);
+  for (const std::string& name : library_names("sensor_models"))
+    fmt::print("{:<20} {}\n", name, load_sonar(name).title);
 }
 
 void check(const std::string& path_or_name) {
   const SonarModel sonar = load_sonar(path_or_name);
   const SonarGeometry& g = sonar.geometry;
   const RayFan fan(sonar);
-  fmt::print("{}: {}\n"
-             "  {:.0f} kHz, {:.0f} kHz bandwidth, source level {} dB, {} Hz\n"
-             "  {} beams from {:.2f} to {:.2f} deg, {:.2f} deg wide; {:.1f} deg in elevation\n"
-             "  {} bins of {:.2f} mm, {} to {:.3f} m (instrument: {} to {} m)\n"
-             "  {} x {} rays over {:.1f} deg of elevation\n",
-             sonar.name, sonar.title, sonar.frequency_hz / 1e3, sonar.bandwidth_hz / 1e3, sonar.source_level_db,
-             sonar.ping_rate_hz, g.beams(), degrees(g.beam_azimuth_rad.front()), degrees(g.beam_azimuth_rad.back()),
-             degrees(sonar.receive_azimuth.width_rad()), degrees(g.elevation_fov_rad), g.range_bins,
-             1e3 * g.bin_size_m(), g.range_min_m, g.range_max_m, sonar.instrument_range_min_m,
-             sonar.instrument_range_max_m, fan.columns.size(), fan.elevation_rays,
-             degrees(2.0 * fan.elevation_rad.back()));
+  fmt::print(
+      "{}: {}\n"
+      "  {:.0f} kHz, {:.0f} kHz bandwidth, source level {} dB, {} Hz\n"
+      "  {} beams from {:.2f} to {:.2f} deg, {:.2f} deg wide; {:.1f} deg in elevation\n"
+      "  {} bins of {:.2f} mm, {} to {:.3f} m (instrument: {} to {} m)\n"
+      "  {} x {} rays over {:.1f} deg of elevation\n",
+      sonar.name, sonar.title, sonar.frequency_hz / 1e3, sonar.bandwidth_hz / 1e3, sonar.source_level_db,
+      sonar.ping_rate_hz, g.beams(), degrees(g.beam_azimuth_rad.front()), degrees(g.beam_azimuth_rad.back()),
+      degrees(sonar.receive_azimuth.width_rad()), degrees(g.elevation_fov_rad), g.range_bins, 1e3 * g.bin_size_m(),
+      g.range_min_m, g.range_max_m, sonar.instrument_range_min_m, sonar.instrument_range_max_m, fan.columns.size(),
+      fan.elevation_rays, degrees(2.0 * fan.rows[0].elevation_rad.back()));
   if (!sonar.unverified.empty()) fmt::print("  unverified: {}\n", fmt::join(sonar.unverified, ", "));
   fmt::print("valid\n");
 }

@@ -17,8 +17,8 @@ void add_verify(CLI::App& app) {
   command->footer("Example:\n  ensonify verify out/quick");
   command->callback([folder, style] {
     ProgressLine progress(parse_progress_style(*style));
-    const VerifyReport report = verify_dataset(
-        *folder, [&](int done, int total) { progress.show("verify", done, done, total); });
+    const VerifyReport report =
+        verify_dataset(*folder, [&](int done, int total) { progress.show("verify", done, done, total); });
     for (const std::string& fault : report.faults) fmt::print(stderr, "ensonify: {}\n", fault);
     if (!report.faults.empty()) {
       fmt::print(stderr, "ensonify: {} is not as its manifest says\n", *folder);

@@ -19,8 +19,9 @@ struct PingTruth {
   /// First hit along every traced ray: rows = elevation rays (row 0 lowest), columns = azimuth rays
   /// (column 0 port-most); +inf where nothing was met within range_max.
   Image2<float> first_hit_range_m;
-  std::vector<float> ray_elevation_rad;
-  std::vector<float> ray_azimuth_rad;
+  std::vector<float> ray_azimuth_rad;       ///< a column, descending
+  std::vector<float> lowest_elevation_rad;  ///< a column: elevation of its row 0
+  float elevation_step_rad = 0;             ///< from row to row
 
   /// A beam: first bin before which at least half of the elevation arc is occluded; range_bins if none.
   std::vector<int> shadow_start_bin;

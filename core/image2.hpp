@@ -27,9 +27,7 @@ class Image2 {
   const T& operator()(int row, int column) const { return data_[index(row, column)]; }
 
   std::span<T> row(int r) { return {data_.data() + index(r, 0), static_cast<std::size_t>(columns_)}; }
-  std::span<const T> row(int r) const {
-    return {data_.data() + index(r, 0), static_cast<std::size_t>(columns_)};
-  }
+  std::span<const T> row(int r) const { return {data_.data() + index(r, 0), static_cast<std::size_t>(columns_)}; }
   std::span<T> pixels() { return data_; }
   std::span<const T> pixels() const { return data_; }
 

@@ -16,8 +16,7 @@ struct GridFrame {
   std::array<int, 3> size{};  ///< cells along x, y, z
 
   std::size_t cells() const {
-    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) *
-           static_cast<std::size_t>(size[2]);
+    return static_cast<std::size_t>(size[0]) * static_cast<std::size_t>(size[1]) * static_cast<std::size_t>(size[2]);
   }
   /// x runs fastest: the layout of a C-ordered array [z, y, x].
   std::size_t index(int ix, int iy, int iz) const {
@@ -33,9 +32,7 @@ struct GridFrame {
     return {static_cast<int>(std::floor(c.x())), static_cast<int>(std::floor(c.y())),
             static_cast<int>(std::floor(c.z()))};
   }
-  Vec3 centre_m(int ix, int iy, int iz) const {
-    return origin_m + resolution_m * Vec3(ix + 0.5, iy + 0.5, iz + 0.5);
-  }
+  Vec3 centre_m(int ix, int iy, int iz) const { return origin_m + resolution_m * Vec3(ix + 0.5, iy + 0.5, iz + 0.5); }
 };
 
 enum class Occupancy : std::uint8_t {

@@ -16,8 +16,7 @@ Pose pose_from_xyz_rpy(const Vec3& position_m, double roll, double pitch, double
 
 std::array<double, 3> roll_pitch_yaw(const Pose& pose) {
   const Eigen::Matrix3d r = pose.rotation();
-  return {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)),
-          std::atan2(r(1, 0), r(0, 0))};
+  return {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))};
 }
 
 }  // namespace ensonify

@@ -21,12 +21,11 @@ std::uint64_t fnv1a(std::string_view text) {
 double acklam_quantile(double p) {
   constexpr std::array a{-3.969683028665376e+01, 2.209460984245205e+02,  -2.759285104469687e+02,
                          1.383577518672690e+02,  -3.066479806614716e+01, 2.506628277459239e+00};
-  constexpr std::array b{-5.447609879822406e+01, 1.615858368580409e+02, -1.556989798598866e+02,
-                         6.680131188771972e+01, -1.328068155288572e+01};
+  constexpr std::array b{-5.447609879822406e+01, 1.615858368580409e+02, -1.556989798598866e+02, 6.680131188771972e+01,
+                         -1.328068155288572e+01};
   constexpr std::array c{-7.784894002430293e-03, -3.223964580411365e-01, -2.400758277161838e+00,
                          -2.549732539343734e+00, 4.374664141464968e+00,  2.938163982698783e+00};
-  constexpr std::array d{7.784695709041462e-03, 3.224671290700398e-01, 2.445134137142996e+00,
-                         3.754408661907416e+00};
+  constexpr std::array d{7.784695709041462e-03, 3.224671290700398e-01, 2.445134137142996e+00, 3.754408661907416e+00};
   const auto tail = [&](double q) {
     return (((((c[0] * q + c[1]) * q + c[2]) * q + c[3]) * q + c[4]) * q + c[5]) /
            ((((d[0] * q + d[1]) * q + d[2]) * q + d[3]) * q + 1.0);
@@ -48,9 +47,9 @@ RandomKey RandomKey::from_seed(std::uint64_t seed) {
 
 RandomKey RandomKey::child(std::uint64_t tag) const {
   constexpr std::uint32_t derivation = 0x6b657921u;  // keeps derived keys apart from drawn numbers
-  const auto words = Philox{}({{static_cast<std::uint32_t>(tag), static_cast<std::uint32_t>(tag >> 32), derivation,
-                                derivation}},
-                              {{word0, word1}});
+  const auto words =
+      Philox{}({{static_cast<std::uint32_t>(tag), static_cast<std::uint32_t>(tag >> 32), derivation, derivation}},
+               {{word0, word1}});
   return {words[0], words[1]};
 }
 
@@ -62,8 +61,7 @@ std::array<std::uint32_t, 4> random_words(RandomKey key, std::uint32_t c0, std::
 }
 
 double uniform_at(RandomKey key, std::uint64_t index) {
-  const auto words =
-      random_words(key, static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32), 1u);
+  const auto words = random_words(key, static_cast<std::uint32_t>(index), static_cast<std::uint32_t>(index >> 32), 1u);
   const std::uint64_t bits = (static_cast<std::uint64_t>(words[0]) << 32 | words[1]) >> 12;
   return (static_cast<double>(bits) + 0.5) * 0x1p-52;
 }

@@ -35,7 +35,10 @@ void write_dataset_card(const DatasetPaths& paths, const json& manifest) {
   std::string places;
   for (const json& grid : manifest["grids"]) places += fmt::format("- {}\n", grid["place"].get<std::string>());
   const json& sonar = manifest["sonar"];
-  write_file(paths.root / "README.md", fmt::format(R"(---
+  write_file(
+      paths.root / "README.md",
+      fmt::format(
+          R"(---
 pretty_name: "{title}"
 task_categories:
 - image-segmentation
@@ -77,20 +80,14 @@ The same tool version, recipe, seed and `--isa {isa}` give the same pixels on an
 
 Content hash (SHA-256 over decoded pixels, metadata and grids): `{hash}`
 )",
-                                                       fmt::arg("title", manifest["recipe"]["title"].get<std::string>()),
-                                                       fmt::arg("size", size_category(frames)),
-                                                       fmt::arg("configs", configs),
-                                                       fmt::arg("sonar", sonar["title"].get<std::string>()),
-                                                       fmt::arg("version", ENSONIFY_VERSION),
-                                                       fmt::arg("threshold", manifest["mask"]["threshold"].get<int>()),
-                                                       fmt::arg("bins", sonar["range_bins"].get<int>()),
-                                                       fmt::arg("rmin", sonar["range_min_m"].get<double>()),
-                                                       fmt::arg("rmax", sonar["range_max_m"].get<double>()),
-                                                       fmt::arg("beams", sonar["beam_azimuth_rad"].size()),
-                                                       fmt::arg("counts", counts), fmt::arg("places", places),
-                                                       fmt::arg("isa", manifest["isa"].get<std::string>()),
-                                                       fmt::arg("command", manifest["command_line"].get<std::string>()),
-                                                       fmt::arg("hash", manifest["root_hash"].get<std::string>())));
+          fmt::arg("title", manifest["recipe"]["title"].get<std::string>()), fmt::arg("size", size_category(frames)),
+          fmt::arg("configs", configs), fmt::arg("sonar", sonar["title"].get<std::string>()),
+          fmt::arg("version", ENSONIFY_VERSION), fmt::arg("threshold", manifest["mask"]["threshold"].get<int>()),
+          fmt::arg("bins", sonar["range_bins"].get<int>()), fmt::arg("rmin", sonar["range_min_m"].get<double>()),
+          fmt::arg("rmax", sonar["range_max_m"].get<double>()), fmt::arg("beams", sonar["beam_azimuth_rad"].size()),
+          fmt::arg("counts", counts), fmt::arg("places", places), fmt::arg("isa", manifest["isa"].get<std::string>()),
+          fmt::arg("command", manifest["command_line"].get<std::string>()),
+          fmt::arg("hash", manifest["root_hash"].get<std::string>())));
 }
 
 void write_croissant(const DatasetPaths& paths, const json& manifest) {

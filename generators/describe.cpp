@@ -22,9 +22,9 @@ json describe(const Recipe& recipe) {
   if (recipe.range_min_m) sonar["range_min_m"] = *recipe.range_min_m;
   if (recipe.range_max_m) sonar["range_max_m"] = describe(*recipe.range_max_m);
   if (recipe.range_bins) sonar["range_bins"] = *recipe.range_bins == 0 ? json("native") : json(*recipe.range_bins);
-  json result{{"name", recipe.name},   {"title", recipe.title},
-              {"seed", recipe.seed},   {"sonar", sonar},
-              {"noise", recipe.noise}, {"mask", {{"threshold", recipe.mask_threshold}}},
+  json result{{"name", recipe.name},       {"title", recipe.title},
+              {"seed", recipe.seed},       {"sonar", sonar},
+              {"noise", recipe.noise},     {"mask", {{"threshold", recipe.mask_threshold}}},
               {"truth", recipe.cell_truth}};
   result["drift"] = {{"radial_error_m", recipe.drift.radial_error_m}, {"after_s", recipe.drift.after_s}};
   for (const Split& split : recipe.splits) {
@@ -33,12 +33,10 @@ json describe(const Recipe& recipe) {
       entry["places"].push_back({{"name", place.name}, {"scene", place.scene}, {"layout", place.layout}});
     }
     if (const auto* random = std::get_if<RandomPoses>(&split.poses)) {
-      entry["random_poses"] = {{"roll_deg", describe(random->roll_deg)},
-                               {"pitch_deg", describe(random->pitch_deg)},
-                               {"yaw_deg", describe(random->yaw_deg)},
-                               {"clearance_m", random->clearance_m},
-                               {"least_seen_share", random->least_seen_share},
-                               {"tries", random->tries}};
+      entry["random_poses"] = {
+          {"roll_deg", describe(random->roll_deg)},       {"pitch_deg", describe(random->pitch_deg)},
+          {"yaw_deg", describe(random->yaw_deg)},         {"clearance_m", random->clearance_m},
+          {"least_seen_share", random->least_seen_share}, {"tries", random->tries}};
     } else {
       const auto& trajectory = std::get<TrajectoryPoses>(split.poses);
       entry["trajectory"] = {{"speed_mps", trajectory.speed_mps}, {"rate_hz", trajectory.rate_hz}};
@@ -68,8 +66,7 @@ json describe(const SonarModel& sonar) {
             {"saturation_level_db", sonar.receive.saturation_level_db},
             {"gamma", sonar.receive.gamma},
             {"bits", sonar.receive.bits}}},
-          {"rays",
-           {{"azimuth_per_beam", sonar.rays.azimuth_rays_per_beam}, {"elevation", sonar.rays.elevation_rays}}},
+          {"rays", {{"azimuth_per_beam", sonar.rays.azimuth_rays_per_beam}, {"elevation", sonar.rays.elevation_rays}}},
           {"unverified", sonar.unverified}};
 }
 

@@ -109,7 +109,8 @@ json write_metadata(const FrameMaker& maker, const DatasetPaths& paths, const st
 }
 
 json label_legend() {
-  return {{"0", "water"}, {"1", "direct echo"}, {"2", "multipath"}, {"3", "sidelobe"}, {"4", "shadow"}, {"5", "outside"}};
+  return {{"0", "water"},    {"1", "direct echo"}, {"2", "multipath"},
+          {"3", "sidelobe"}, {"4", "shadow"},      {"5", "outside"}};
 }
 
 }  // namespace

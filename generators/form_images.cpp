@@ -38,7 +38,8 @@ PingImages form_images(const SonarModel& sonar, const PointSpread& spread, const
 
   SonarModel amplified = sonar;
   amplified.receive.saturation_level_db -= settings.gain_db;
-  images.raw.level = disturb(settings.noise, settings.gain_db == 0.0 ? images.clean.level : receive(amplified, intensity), key);
+  images.raw.level =
+      disturb(settings.noise, settings.gain_db == 0.0 ? images.clean.level : receive(amplified, intensity), key);
   images.raw.grey = quantise(images.raw.level);
   return images;
 }

@@ -142,7 +142,8 @@ SonarModel FrameMaker::sonar_for(int index, SampledValues& sampled) const {
 Ping FrameMaker::ping(const FramePose& pose, bool cell_truth) const {
   const Slot& where = slot(pose.place);
   if (!window_varies(recipe_)) return where.tracer->trace(pose.T_world_sonar, cell_truth);
-  return PingTracer(where.place->rays, sonar_for(pose.index), where.place->scene.water).trace(pose.T_world_sonar, cell_truth);
+  return PingTracer(where.place->rays, sonar_for(pose.index), where.place->scene.water)
+      .trace(pose.T_world_sonar, cell_truth);
 }
 
 Frame FrameMaker::make(int index) const {
@@ -160,9 +161,10 @@ Frame FrameMaker::make(int index) const {
   if (!std::holds_alternative<Constant>(recipe_.gain_db)) sampled.emplace_back("sonar.gain_db", settings.gain_db);
   settings.mask_threshold = recipe_.mask_threshold;
 
-  frame.images = window_varies(recipe_)
-                     ? form_images(frame.sonar, PointSpread(frame.sonar), ping.echo, ping.truth, settings, key.child("noise"))
-                     : form_images(frame.sonar, spread_, ping.echo, ping.truth, settings, key.child("noise"));
+  frame.images =
+      window_varies(recipe_)
+          ? form_images(frame.sonar, PointSpread(frame.sonar), ping.echo, ping.truth, settings, key.child("noise"))
+          : form_images(frame.sonar, spread_, ping.echo, ping.truth, settings, key.child("noise"));
   frame.truth = std::move(ping.truth);
   frame.echo = std::move(ping.echo);
   return frame;

@@ -13,10 +13,10 @@ namespace ensonify {
 
 /// Where a frame stands in its dataset and where its sonar stood.
 struct FramePose {
-  int index = 0;        ///< over the whole dataset
-  int split = 0;        ///< index into Recipe::splits
-  int number = 0;       ///< within the split: its file name
-  int place = 0;        ///< over all splits' places in order
+  int index = 0;                 ///< over the whole dataset
+  int split = 0;                 ///< index into Recipe::splits
+  int number = 0;                ///< within the split: its file name
+  int place = 0;                 ///< over all splits' places in order
   std::optional<double> time_s;  ///< empty for random poses
   Pose T_world_sonar = Pose::Identity();
   Pose T_world_sonar_est = Pose::Identity();

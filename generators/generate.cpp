@@ -66,8 +66,10 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
   for (const Block& block : blocks) {
     if (block.index % options.shards != options.shard) continue;
     progress.total += block.frames;
-    if (is_done(paths, block)) progress.done += block.frames;
-    else missing.push_back(block);
+    if (is_done(paths, block))
+      progress.done += block.frames;
+    else
+      missing.push_back(block);
   }
   options.on_progress(progress);
 

@@ -75,8 +75,8 @@ Split read_split(const std::string& name, Reader split) {
   if (split.has("trajectory")) {
     result.poses = read_trajectory_poses(split.child("trajectory"));
     if (result.frames % static_cast<int>(result.places.size()) != 0) {
-      split.fail("frames", fmt::format("must be a multiple of the {} places of a trajectory split",
-                                       result.places.size()));
+      split.fail("frames",
+                 fmt::format("must be a multiple of the {} places of a trajectory split", result.places.size()));
     }
   } else {
     result.poses = read_random_poses(split.child("random_poses"));

@@ -55,11 +55,11 @@ struct Recipe {
   std::string sonar;
   std::optional<double> range_min_m;
   std::optional<Distribution> range_max_m;
-  std::optional<int> range_bins;         ///< 0: native
-  Distribution gain_db = Constant{0};    ///< of the raw image over the nominal receive chain
+  std::optional<int> range_bins;       ///< 0: native
+  Distribution gain_db = Constant{0};  ///< of the raw image over the nominal receive chain
   std::string noise;
-  int mask_threshold = 8;                ///< grey level
-  bool cell_truth = false;               ///< write truth/*.exr
+  int mask_threshold = 8;   ///< grey level
+  bool cell_truth = false;  ///< write truth/*.exr
   std::vector<Split> splits;
   Drift drift;
 

@@ -50,8 +50,8 @@ class Verifier {
     const fs::path manifest = folder / "dataset.json";
     std::error_code error;
     if (!fs::is_regular_file(manifest, error)) {
-      throw DataError(fmt::format("{}: no dataset.json: no dataset, or an unfinished one; run generate again to finish it",
-                                  folder.string()));
+      throw DataError(fmt::format(
+          "{}: no dataset.json: no dataset, or an unfinished one; run generate again to finish it", folder.string()));
     }
     try {
       manifest_ = json::parse(read_text(manifest));
@@ -115,15 +115,18 @@ class Verifier {
     parallel_for(static_cast<int>(last_shard - first_shard), [&](int s) {
       const auto number = static_cast<std::size_t>(s);
       try {
-        if (tars) check_tar(split, s, starts[number], starts[number + 1], lines, hashes);
-        else for (std::size_t i = starts[number]; i < starts[number + 1]; ++i) check_files(split, i, lines[i], hashes[i]);
+        if (tars)
+          check_tar(split, s, starts[number], starts[number + 1], lines, hashes);
+        else
+          for (std::size_t i = starts[number]; i < starts[number + 1]; ++i) check_files(split, i, lines[i], hashes[i]);
       } catch (const Error& e) {
         fault(e.what());
       }
       Sha256 shard_hash;
       for (std::size_t i = starts[number]; i < starts[number + 1]; ++i) shard_hash.add(std::string_view(hashes[i]));
       if (shard_hash.hex() != shards[first_shard + number].at("sha256")) {
-        fault(fmt::format("{}: frames {} to {} differ from the manifest", split, starts[number], starts[number + 1] - 1));
+        fault(
+            fmt::format("{}: frames {} to {} differ from the manifest", split, starts[number], starts[number + 1] - 1));
       }
     });
     for (const std::string& hash : hashes) root.add(std::string_view(hash));

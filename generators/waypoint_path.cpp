@@ -9,8 +9,7 @@ namespace ensonify {
 
 WaypointPath::WaypointPath(std::vector<Pose> waypoints) : waypoints_(std::move(waypoints)) {
   for (std::size_t i = 0; i < waypoints_.size(); ++i) {
-    const double leg_m =
-        i == 0 ? 0.0 : (waypoints_[i].translation() - waypoints_[i - 1].translation()).norm();
+    const double leg_m = i == 0 ? 0.0 : (waypoints_[i].translation() - waypoints_[i - 1].translation()).norm();
     start_m_.push_back(i == 0 ? 0.0 : start_m_.back() + leg_m);
   }
   if (start_m_.empty() || start_m_.back() <= 0.0) {

@@ -27,8 +27,8 @@ FrameRecord record_of(const FrameMaker& maker, const Frame& frame) {
   FrameRecord record;
   record.index = frame.pose.index;
   record.line = metadata_line(maker, frame.pose, frame.sonar, frame.images.mask);
-  record.sha256 = content_hash(frame.images.raw.grey, frame.images.clean.grey, frame.images.mask, frame.images.labels,
-                               record.line);
+  record.sha256 =
+      content_hash(frame.images.raw.grey, frame.images.clean.grey, frame.images.mask, frame.images.labels, record.line);
   return record;
 }
 

@@ -14,8 +14,7 @@ std::string metadata_line(const FrameMaker& maker, const FramePose& pose, const 
 
 /// SHA-256 of what a frame says, whatever its files: pixels of raw, clean, mask, labels, and its metadata line.
 std::string content_hash(const Image2<std::uint8_t>& raw, const Image2<std::uint8_t>& clean,
-                         const Image2<std::uint8_t>& mask, const Image2<std::uint8_t>& labels,
-                         const std::string& line);
+                         const Image2<std::uint8_t>& mask, const Image2<std::uint8_t>& labels, const std::string& line);
 
 struct FrameRecord {
   int index = 0;

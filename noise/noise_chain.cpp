@@ -15,8 +15,7 @@ constexpr Limits sigma_limits{0.0, 10.0};
 constexpr std::size_t max_stages = 32;
 
 NoiseStage<Distribution> read_stage(Reader& stage) {
-  const std::string kind =
-      stage.choice("stage", {GaussianSpeckle<double>::kind, AdditiveRayleigh<double>::kind});
+  const std::string kind = stage.choice("stage", {GaussianSpeckle<double>::kind, AdditiveRayleigh<double>::kind});
   const Distribution sigma = read_distribution(stage, "sigma", sigma_limits);
   if (kind == GaussianSpeckle<double>::kind) return GaussianSpeckle<Distribution>{sigma};
   return AdditiveRayleigh<Distribution>{sigma};

@@ -20,8 +20,9 @@ namespace fs = std::filesystem;
   throw DataError(fmt::format("{}: {}: {}", path.string(), what, std::strerror(errno)));
 }
 
-void write_bytes(const fs::path& path, const void* data, std::size_t size) {
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+/// `path` is what the message names; the bytes go to `temporary`.
+void write_bytes(const fs::path& path, const fs::path& temporary, const void* data, std::size_t size) {
+  const int file = ::open(temporary.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
   if (file < 0) fail(path, "can not be written");
   const char* next = static_cast<const char*>(data);
   while (size > 0) {
@@ -44,7 +45,8 @@ Bytes read_bytes(const fs::path& path, std::size_t max_bytes) {
   std::error_code error;
   const auto size = fs::file_size(path, error);
   if (error) throw DataError(fmt::format("{}: can not be read: {}", path.string(), error.message()));
-  if (size > max_bytes) throw DataError(fmt::format("{}: {} bytes is more than the {} allowed", path.string(), size, max_bytes));
+  if (size > max_bytes)
+    throw DataError(fmt::format("{}: {} bytes is more than the {} allowed", path.string(), size, max_bytes));
   Bytes bytes(size, {});
   std::ifstream in(path, std::ios::binary);
   in.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(size));
@@ -57,7 +59,8 @@ Bytes read_bytes(const fs::path& path, std::size_t max_bytes) {
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   std::error_code error;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
-  if (error) throw DataError(fmt::format("{}: folder can not be made: {}", path.parent_path().string(), error.message()));
+  if (error)
+    throw DataError(fmt::format("{}: folder can not be made: {}", path.parent_path().string(), error.message()));
   const fs::path temporary = path.parent_path() / fmt::format(".{}.tmp-{}", path.filename().string(), ::getpid());
   try {
     write(temporary);
@@ -72,11 +75,11 @@ void write_atomically(const fs::path& path, const std::function<void(const fs::p
 }
 
 void write_file(const fs::path& path, std::span<const std::uint8_t> bytes) {
-  write_atomically(path, [&](const fs::path& temporary) { write_bytes(temporary, bytes.data(), bytes.size()); });
+  write_atomically(path, [&](const fs::path& temporary) { write_bytes(path, temporary, bytes.data(), bytes.size()); });
 }
 
 void write_file(const fs::path& path, std::string_view text) {
-  write_atomically(path, [&](const fs::path& temporary) { write_bytes(temporary, text.data(), text.size()); });
+  write_atomically(path, [&](const fs::path& temporary) { write_bytes(path, temporary, text.data(), text.size()); });
 }
 
 std::vector<std::uint8_t> read_file(const fs::path& path, std::size_t max_bytes) {

@@ -22,8 +22,10 @@ float column_of(const std::vector<double>& azimuth, double theta) {
 }  // namespace
 
 Image2<std::uint8_t> fan_view(const Image2<std::uint8_t>& image, const SonarGeometry& geometry, int height) {
-  const double widest = std::max(std::abs(geometry.beam_azimuth_rad.front()), std::abs(geometry.beam_azimuth_rad.back()));
-  const int half_width = std::max(1, static_cast<int>(std::ceil(height * std::sin(std::min(widest, std::numbers::pi / 2)))));
+  const double widest =
+      std::max(std::abs(geometry.beam_azimuth_rad.front()), std::abs(geometry.beam_azimuth_rad.back()));
+  const int half_width =
+      std::max(1, static_cast<int>(std::ceil(height * std::sin(std::min(widest, std::numbers::pi / 2)))));
   const int width = 2 * half_width;
   const double metres_per_pixel = geometry.range_max_m / height;
   cv::Mat column(height, width, CV_32F);
@@ -33,8 +35,7 @@ Image2<std::uint8_t> fan_view(const Image2<std::uint8_t>& image, const SonarGeom
       const double x = (height - v - 0.5) * metres_per_pixel;
       const double y = (half_width - u - 0.5) * metres_per_pixel;
       column.at<float>(v, u) = column_of(geometry.beam_azimuth_rad, std::atan2(y, x));
-      row.at<float>(v, u) =
-          static_cast<float>((std::hypot(x, y) - geometry.range_min_m) / geometry.bin_size_m() - 0.5);
+      row.at<float>(v, u) = static_cast<float>((std::hypot(x, y) - geometry.range_min_m) / geometry.bin_size_m() - 0.5);
     }
   }
   const cv::Mat polar(image.rows(), image.columns(), CV_8U, const_cast<std::uint8_t*>(image.pixels().data()));

@@ -41,8 +41,8 @@ std::vector<std::uint8_t> encode(std::span<const std::uint8_t> scanlines, int wi
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
       libdeflate_alloc_compressor(fastest), libdeflate_free_compressor);
   std::vector<std::uint8_t> packed(libdeflate_zlib_compress_bound(compressor.get(), scanlines.size()));
-  packed.resize(libdeflate_zlib_compress(compressor.get(), scanlines.data(), scanlines.size(), packed.data(),
-                                         packed.size()));
+  packed.resize(
+      libdeflate_zlib_compress(compressor.get(), scanlines.data(), scanlines.size(), packed.data(), packed.size()));
   std::vector<std::uint8_t> header;
   put_u32(header, static_cast<std::uint32_t>(width));
   put_u32(header, static_cast<std::uint32_t>(height));

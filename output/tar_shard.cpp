@@ -74,7 +74,8 @@ void read_tar(const fs::path& path,
     if (status == ARCHIVE_EOF) return;
     if (status != ARCHIVE_OK) fail(path, in.get());
     const la_int64_t size = archive_entry_size(entry);
-    if (size < 0 || size > max_member_bytes) throw DataError(fmt::format("{}: member of {} bytes", path.string(), size));
+    if (size < 0 || size > max_member_bytes)
+      throw DataError(fmt::format("{}: member of {} bytes", path.string(), size));
     std::vector<std::uint8_t> bytes(static_cast<std::size_t>(size));
     if (archive_read_data(in.get(), bytes.data(), bytes.size()) != static_cast<la_ssize_t>(size)) fail(path, in.get());
     visit(archive_entry_pathname(entry), bytes);

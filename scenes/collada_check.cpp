@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <charconv>
 #include <map>
 #include <vector>
 
@@ -79,10 +81,64 @@ struct NodeGraph {
   }
 };
 
+/// Arrays of numbers and the accessors that read them. assimp takes their counts on trust.
+struct ArrayBook {
+  struct Accessor {
+    std::string source;
+    std::size_t offset = 0, count = 0, stride = 1, width = 0;
+  };
+  std::map<std::string, std::size_t, std::less<>> lengths;
+  std::vector<Accessor> accessors;
+  bool in_accessor = false;
+
+  void add(std::string_view tag, std::string_view word, std::size_t file_bytes, std::string& fault) {
+    const auto whole = [&](const char* name, std::size_t fallback) {
+      const std::string_view text = attribute(tag, name);
+      if (text.empty() && tag.find(name) == std::string_view::npos) return fallback;
+      std::size_t value = 0;
+      const auto [rest, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+      if (error != std::errc() || rest != text.data() + text.size() || value > file_bytes) {
+        fault = "a count, stride or offset is no whole number, or larger than the file";
+      }
+      return value;
+    };
+    if (word == "/accessor") in_accessor = false;
+    if (word == "param" && in_accessor) {
+      accessors.back().width += attribute(tag, "type").find("4x4") == std::string_view::npos ? 1 : 16;
+    }
+    if (word == "input" || word == "polylist" || word == "triangles" || word == "polygons") {
+      whole("count", 0);
+      whole("offset", 0);
+    }
+    const std::string_view name = attribute(tag, word == "accessor" ? "source" : "id");
+    if (word.ends_with("_array")) {
+      const std::size_t length = whole("count", 0);
+      if (name.find('&') != std::string_view::npos) fault = "an array is named with escaped text";
+      const auto [entry, is_new] = lengths.try_emplace(std::string(name), length);
+      if (!is_new) entry->second = std::min(entry->second, length);
+    }
+    if (word == "accessor" && name.starts_with('#')) {
+      accessors.push_back({std::string(name.substr(1)), whole("offset", 0), whole("count", 0), whole("stride", 1), 0});
+      in_accessor = !tag.ends_with('/');
+    }
+  }
+
+  std::string reading_fault() const {
+    for (const Accessor& a : accessors) {
+      const auto array = lengths.find(a.source);
+      if (array == lengths.end() || a.count == 0) continue;
+      const std::size_t last = a.offset + (a.count - 1) * a.stride;
+      if (last + std::max(a.stride, a.width) > array->second) return "an accessor reads beyond its array";
+    }
+    return {};
+  }
+};
+
 }  // namespace
 
 std::string collada_fault(std::string_view xml) {
   NodeGraph graph;
+  ArrayBook arrays;
   std::vector<std::size_t> open;  // the node that each open element is in
   std::string fault;
   bool any = false;
@@ -98,11 +154,13 @@ std::string collada_fault(std::string_view xml) {
     if (rest.starts_with("</")) {
       if (open.empty()) return "its elements do not match";
       open.pop_back();
+      arrays.add(xml.substr(i + 1, end - i - 1), xml.substr(i + 1, end - i - 1), xml.size(), fault);
     } else if (close.empty()) {
       const std::string_view tag = xml.substr(i + 1, end - i - 1);
       const std::string_view word = tag.substr(0, tag.find_first_of(" \t\r\n/"));
       const std::size_t parent = open.empty() ? none : open.back();
       const std::size_t node = graph.add(tag, word, parent, fault);
+      arrays.add(tag, word, xml.size(), fault);
       if (!fault.empty()) return fault;
       if (!tag.ends_with('/')) open.push_back(node == none ? parent : node);
       if (open.size() > max_nesting) return "its text nests more than 400 deep";
@@ -111,7 +169,8 @@ std::string collada_fault(std::string_view xml) {
     i = end;
   }
   if (!any || !open.empty()) return any ? "the file is cut short" : "it holds no XML";
-  return graph.unfolding_fault();
+  fault = arrays.reading_fault();
+  return fault.empty() ? graph.unfolding_fault() : fault;
 }
 
 }  // namespace ensonify

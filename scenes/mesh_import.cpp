@@ -48,6 +48,16 @@ Eigen::Matrix3d metres_z_up(const aiScene& scene, MeshFormat format, const MeshI
   return options.scale * unit_m * z_up_from(options.up_axis.value_or(y_up_by_format ? UpAxis::y : UpAxis::z));
 }
 
+/// Before the triangulation, whose assertions abort the program.
+void check_faces(const aiScene& scene, const std::string& file) {
+  for (unsigned m = 0; m < scene.mNumMeshes; ++m) {
+    const aiMesh& mesh = *scene.mMeshes[m];
+    for (unsigned f = 0; f < mesh.mNumFaces; ++f) {
+      if (mesh.mFaces[f].mNumIndices == 0) throw DataError(fmt::format("{}: a face has no corners", file));
+    }
+  }
+}
+
 struct Visit {
   const aiNode* node;
   Eigen::Matrix4d T_world_parent;
@@ -130,8 +140,11 @@ TriangleMesh import_mesh(const fs::path& path, const MeshImportOptions& options,
   importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, options.up_axis.has_value());
   importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
   importer.SetPropertyInteger(AI_CONFIG_PP_SBP_REMOVE, aiPrimitiveType_POINT | aiPrimitiveType_LINE);
-  const aiScene* scene =
-      importer.ReadFile(file, aiProcess_Triangulate | aiProcess_SortByPType | aiProcess_ValidateDataStructure);
+  const aiScene* scene = importer.ReadFile(file, aiProcess_ValidateDataStructure);
+  if (scene != nullptr) {
+    check_faces(*scene, file);
+    scene = importer.ApplyPostProcessing(aiProcess_Triangulate | aiProcess_SortByPType);
+  }
   if (scene == nullptr || scene->mRootNode == nullptr) {
     throw DataError(fmt::format("{}: can not be read as {}: {}", file, format_name(format), importer.GetErrorString()));
   }

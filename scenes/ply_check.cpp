@@ -1,9 +1,8 @@
-#include <array>
-#include <bit>
-#include <cmath>
+#include <algorithm>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -43,10 +42,12 @@ std::size_t bytes_of(const std::string& type) {
 }
 
 std::string read_header(std::string_view bytes, Header& header) {
-  const std::size_t end = bytes.substr(0, 1 << 20).find("end_header");
+  // The last line must be just this: a parser that does not see it there reads on into the body.
+  const std::string_view start = bytes.substr(0, 1 << 20);
+  const std::size_t end = std::min(start.find("\nend_header\n"), start.find("\nend_header\r\n"));
   if (!bytes.starts_with("ply") || end == std::string_view::npos) return "it has no PLY header";
-  const std::size_t line_end = bytes.find('\n', end);
-  header.body = line_end == std::string_view::npos ? bytes.size() : line_end + 1;
+  header.body = bytes.find('\n', end + 1) + 1;
+  std::set<std::string> names;
   std::istringstream lines{std::string(bytes.substr(0, end))};
   for (std::string line; std::getline(lines, line);) {
     std::istringstream words(line);
@@ -54,10 +55,15 @@ std::string read_header(std::string_view bytes, Header& header) {
     words >> word;
     if (word == "format") words >> header.format;
     if (word == "element") {
-      long long count = -1;
+      std::string count;
       words >> name >> count;
-      if (count < 0) return "an element has no count";
-      header.elements.push_back({static_cast<std::size_t>(count), {}});
+      const bool whole = !count.empty() && count.size() < 19 && count.find_first_not_of("0123456789") == count.npos;
+      if (!whole) return "an element has no whole count";
+      if (!names.insert(name).second) return "an element is given twice";
+      header.elements.push_back({std::stoull(count), {}});
+    } else if (word != "property" && word != "format" && word != "comment" && word != "obj_info" && word != "ply" &&
+               !word.empty()) {
+      return "its header has an unknown line";
     }
     if (word != "property") continue;
     if (header.elements.empty()) return "a property stands before its element";

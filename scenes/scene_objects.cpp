@@ -11,7 +11,7 @@
 namespace ensonify {
 namespace {
 
-constexpr std::size_t max_triangles = 50'000'000;
+constexpr std::size_t max_triangles = 10'000'000;
 constexpr std::size_t max_instances = 200'000;
 
 /// One copy of an object: its parts refer to meshes of the scene.

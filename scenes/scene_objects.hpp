@@ -24,7 +24,7 @@ struct SceneDraft {
 /// Index of a material in scene.materials, taken from the known ones on first use. Throws ConfigError at `key`.
 int use_material(SceneDraft& draft, Reader& reader, std::string_view key, const std::string& name);
 
-/// Adds a mesh; throws ConfigError at `reader` where the scene grows beyond 50 M triangles.
+/// Adds a mesh; throws ConfigError at `reader` where the scene grows beyond 10 M triangles (each mesh counted once).
 int add_mesh(SceneDraft& draft, const Reader& reader, TriangleMesh mesh);
 
 /// Adds an instance; throws ConfigError at `reader` beyond 200 000 instances.

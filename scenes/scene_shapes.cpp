@@ -174,7 +174,7 @@ Terrain read_terrain(const std::string& shape, const FieldSampler& field, double
 }
 
 void check_grid_size(const Reader& reader, const Eigen::Vector2d& size_m, double spacing_m) {
-  constexpr double max_nodes = 4e6;
+  constexpr double max_nodes = 2e6;
   const double nodes = (size_m.x() / spacing_m + 2) * (size_m.y() / spacing_m + 2);
   if (nodes > max_nodes) {
     reader.fail("spacing_m", fmt::format("gives {:.3g} grid nodes, more than {:.3g}; widen it", nodes, max_nodes));

@@ -19,7 +19,7 @@ Assembly build_shape(const std::string& shape, const FieldSampler& field, Random
 /// The height parameters of `fractal` and `rippled` (`flat` has none).
 Terrain read_terrain(const std::string& shape, const FieldSampler& field, double spacing_m);
 
-/// Refuses grids of more than 4 M nodes at the place of `spacing_m`.
+/// Refuses grids of more than 2 M nodes at the place of `spacing_m`.
 void check_grid_size(const Reader& reader, const Eigen::Vector2d& size_m, double spacing_m);
 
 }  // namespace ensonify

@@ -13,9 +13,7 @@ double sinc(double x) {
 }
 
 /// Amplitude of a raised-cosine window a0 + (1 - a0) cos, x = (length / wavelength) sin(theta).
-double raised_cosine(double x, double a0) {
-  return sinc(x) + 0.5 * (1.0 - a0) / a0 * (sinc(x - 1.0) + sinc(x + 1.0));
-}
+double raised_cosine(double x, double a0) { return sinc(x) + 0.5 * (1.0 - a0) / a0 * (sinc(x - 1.0) + sinc(x + 1.0)); }
 
 double amplitude(Shading shading, double x) {
   switch (shading) {

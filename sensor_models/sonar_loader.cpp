@@ -62,9 +62,8 @@ void read_range(Reader range, const RangeWindow& window, SonarModel& sonar) {
   g.range_max_m = window.range_max_m.value_or(default_max_m);
   if (g.range_min_m < sonar.instrument_range_min_m || g.range_max_m > sonar.instrument_range_max_m ||
       !(g.range_min_m < g.range_max_m)) {
-    range.fail("", fmt::format("the range window {} to {} m must lie within the instrument's {} to {} m",
-                               g.range_min_m, g.range_max_m, sonar.instrument_range_min_m,
-                               sonar.instrument_range_max_m));
+    range.fail("", fmt::format("the range window {} to {} m must lie within the instrument's {} to {} m", g.range_min_m,
+                               g.range_max_m, sonar.instrument_range_min_m, sonar.instrument_range_max_m));
   }
   g.range_bins = window.range_bins.value_or(default_bins);
   if (g.range_bins == 0) {

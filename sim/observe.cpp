@@ -78,20 +78,6 @@ class NearestColumn {
   std::vector<int> start_;
 };
 
-/// The row of the ray nearest in elevation, for ascending elevations in equal steps.
-struct NearestRow {
-  double first_rad, per_rad, last_row;
-  int operator()(double elevation_rad) const {
-    return static_cast<int>(std::clamp(std::round((elevation_rad - first_rad) * per_rad), 0.0, last_row));
-  }
-};
-
-NearestRow nearest_row(const std::vector<float>& elevation_rad) {
-  const double steps = static_cast<double>(elevation_rad.size()) - 1;
-  const double first = elevation_rad.front();
-  return {first, steps > 0 ? steps / (static_cast<double>(elevation_rad.back()) - first) : 0.0, steps};
-}
-
 /// Part [begin, end) of a row of cells whose centres start + step * i lie in the box.
 std::pair<int, int> clip_row(const Vec3& start, const Vec3& step, const Eigen::AlignedBox3d& box, int cells) {
   double low = 0;
@@ -127,7 +113,8 @@ void mark_free(const PingTruth& truth, const Frustum& frustum, const Pose& T_wor
 
   const Pose T_sonar_world = T_world_sonar.inverse();
   const Vec3 step = T_sonar_world.linear().col(0) * frame.resolution_m;
-  const NearestRow row_of(nearest_row(truth.ray_elevation_rad));
+  const double rows_per_rad = 1.0 / truth.elevation_step_rad;
+  const double last_row = truth.first_hit_range_m.rows() - 1;
   const NearestColumn column_of(truth.ray_azimuth_rad);
   const double range2_min = frustum.range_min_m * frustum.range_min_m;
   const double range2_max = frustum.range_max_m * frustum.range_max_m;
@@ -148,7 +135,9 @@ void mark_free(const PingTruth& truth, const Frustum& frustum, const Pose& T_wor
         const double azimuth = std::atan2(p.y(), p.x());
         const double elevation = std::atan2(p.z(), std::sqrt(p.x() * p.x() + p.y() * p.y()));
         if (!frustum.holds_direction(azimuth, elevation)) continue;
-        const double hit = truth.first_hit_range_m(row_of(elevation), column_of(azimuth));
+        const int column = column_of(azimuth);
+        const double nearest_row = std::round((elevation - truth.lowest_elevation_rad[column]) * rows_per_rad);
+        const double hit = truth.first_hit_range_m(static_cast<int>(std::clamp(nearest_row, 0.0, last_row)), column);
         if (range2 < hit * hit) grid.observable[row + static_cast<std::size_t>(x)] = 1;
       }
     }
@@ -171,14 +160,12 @@ void mark_hits(const PingTruth& truth, const Frustum& frustum, const Pose& T_wor
     columns.push_back({c, axes * Vec3(std::cos(azimuth), std::sin(azimuth), 0)});
   }
   for (int r = 0; r < truth.first_hit_range_m.rows(); ++r) {
-    const double elevation = truth.ray_elevation_rad[r];
-    if (std::abs(elevation) > frustum.elevation_max_rad) continue;
-    const double cos_elevation = std::cos(elevation);
-    const Vec3 up = std::sin(elevation) * axes.col(2);
     for (const Column& column : columns) {
       const double range = truth.first_hit_range_m(r, column.index);
       if (!(range >= frustum.range_min_m && range <= frustum.range_max_m)) continue;
-      const Vec3 hit = sonar + range * (cos_elevation * column.ahead + up);
+      const double elevation = truth.lowest_elevation_rad[column.index] + static_cast<double>(r) * truth.elevation_step_rad;
+      if (std::abs(elevation) > frustum.elevation_max_rad) continue;
+      const Vec3 hit = sonar + range * (std::cos(elevation) * column.ahead + std::sin(elevation) * axes.col(2));
       if (!((hit.array() >= 0).all() && (hit.array() < beyond.array()).all())) continue;
       const std::size_t cell =
           grid.frame.index(static_cast<int>(hit.x()), static_cast<int>(hit.y()), static_cast<int>(hit.z()));
@@ -192,9 +179,10 @@ void mark_hits(const PingTruth& truth, const Frustum& frustum, const Pose& T_wor
 void mark_observed(const PingTruth& truth, const SonarGeometry& geometry, const Pose& T_world_sonar,
                    OccupancyGrid& grid) {
   const auto& hits = truth.first_hit_range_m;
-  if (hits.empty() || static_cast<std::size_t>(hits.rows()) != truth.ray_elevation_rad.size() ||
-      static_cast<std::size_t>(hits.columns()) != truth.ray_azimuth_rad.size()) {
-    throw ConfigError("ping truth: first_hit_range_m must have one row an elevation ray and one column an azimuth ray");
+  const auto columns = static_cast<std::size_t>(hits.columns());
+  if (hits.empty() || columns != truth.ray_azimuth_rad.size() || columns != truth.lowest_elevation_rad.size() ||
+      !(truth.elevation_step_rad > 0.0f)) {
+    throw ConfigError("ping truth: needs an azimuth and a lowest elevation for each column of first hits, and a step");
   }
   if (geometry.beams() == 0) throw ConfigError("sonar geometry: no beams; give at least one azimuth");
   if (!T_world_sonar.matrix().allFinite()) {

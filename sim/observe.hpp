@@ -12,8 +12,7 @@ namespace ensonify {
 /// - A surface cell: the hit point of a ray in the nominal frustum lies in it.
 /// - An interior cell: never.
 /// Projective: the cells look themselves up in the image of first hits, no ray is walked.
-/// `truth.ray_elevation_rad` ascends in equal steps, `truth.ray_azimuth_rad` descends. Throws ConfigError where sizes
-/// do not match.
+/// Throws ConfigError where sizes do not match.
 void mark_observed(const PingTruth& truth, const SonarGeometry& geometry, const Pose& T_world_sonar,
                    OccupancyGrid& grid);
 

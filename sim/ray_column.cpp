@@ -29,10 +29,10 @@ RayColumn::RayColumn(int count)
       near_m(static_cast<std::size_t>(count)),
       far_m(static_cast<std::size_t>(count)) {}
 
-void cast_column(const RayScene& scene, const RayFan& fan, const RayAxes& axes, const RayFan::Column& column,
+void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::Column& column, const RayAxes& axes,
                  float reach_m, RayColumn& rays) {
-  const Eigen::Vector3f ahead = column.cos_azimuth * axes.forward + column.sin_azimuth * axes.left;
-  const Eigen::Vector3f aside = column.cos_azimuth * axes.left - column.sin_azimuth * axes.forward;
+  const Eigen::Vector3f ahead = column.cosine * axes.forward + column.sine * axes.left;
+  const Eigen::Vector3f aside = column.cosine * axes.left - column.sine * axes.forward;
   const Eigen::Vector3f& up = axes.up;
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
@@ -41,8 +41,8 @@ void cast_column(const RayScene& scene, const RayFan& fan, const RayAxes& axes, 
 
   for (int first = 0; first < rays.rays; first += packet) {
     alignas(32) RTCRayHit8 hit;
-    const float* cos_phi = fan.cos_elevation.data() + first;
-    const float* sin_phi = fan.sin_elevation.data() + first;
+    const float* cos_phi = rows.cosine.data() + first;
+    const float* sin_phi = rows.sine.data() + first;
     for (int l = 0; l < packet; ++l) {
       hit.ray.org_x[l] = axes.origin.x();
       hit.ray.org_y[l] = axes.origin.y();
@@ -87,26 +87,26 @@ void cast_column(const RayScene& scene, const RayFan& fan, const RayAxes& axes, 
   }
 }
 
-void shade_column(const RayScene& scene, const RayFan& fan, const RayFan::Column& column, RayColumn& rays) {
+void shade_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::Column& column, RayColumn& rays) {
   const float* table = scene.scatter_table().data();
   const RayScene::Surface* surfaces = scene.surfaces().data();
   const float column_gain = column.gain * column.width_rad;
   for (int i = 0; i < rays.rays; ++i) {
-    const float slant = rays.normal_forward[i] * fan.cos_elevation[i] + rays.normal_up[i] * fan.sin_elevation[i];
+    const float slant = rays.normal_forward[i] * rows.cosine[i] + rays.normal_up[i] * rows.sine[i];
     const float cosine = std::min(std::abs(slant) * rays.inverse_norm[i], 1.0f);
     const float place = std::sqrt(1.0f - cosine) * static_cast<float>(RayScene::scatter_steps);
     const int step = static_cast<int>(place);
     const float* entry = table + (surfaces[rays.surface[i]].material * RayScene::scatter_stride + step);
     const float scatter = entry[0] + (place - static_cast<float>(step)) * (entry[1] - entry[0]);
     rays.cos_incidence[i] = cosine;
-    rays.energy[i] = rays.range_m[i + 1] < infinity ? scatter * fan.row_gain[i] * column_gain : 0.0f;
+    rays.energy[i] = rays.range_m[i + 1] < infinity ? scatter * rows.gain[i] * column_gain : 0.0f;
   }
   for (int i = 0; i < rays.rays; ++i) {
     // On the tangent plane n . (r d) is constant, so r at a border is r n.d / n.d_border.
     const float r = rays.range_m[i + 1];
-    const float slant = rays.normal_forward[i] * fan.cos_elevation[i] + rays.normal_up[i] * fan.sin_elevation[i];
-    const float lower = rays.normal_forward[i] * fan.cos_edge[i] + rays.normal_up[i] * fan.sin_edge[i];
-    const float upper = rays.normal_forward[i] * fan.cos_edge[i + 1] + rays.normal_up[i] * fan.sin_edge[i + 1];
+    const float slant = rays.normal_forward[i] * rows.cosine[i] + rays.normal_up[i] * rows.sine[i];
+    const float lower = rays.normal_forward[i] * rows.edge_cosine[i] + rays.normal_up[i] * rows.edge_sine[i];
+    const float upper = rays.normal_forward[i] * rows.edge_cosine[i + 1] + rays.normal_up[i] * rows.edge_sine[i + 1];
     const float below = rays.range_m[i];
     const float above = rays.range_m[i + 2];
     float r_lower = slant * lower > 0.0f ? r * (slant / lower) : infinity;
@@ -115,9 +115,9 @@ void shade_column(const RayScene& scene, const RayFan& fan, const RayFan::Column
     r_upper = std::min(std::max(r_upper, std::min(r, above)), std::max(r, above));
     r_lower = r_lower < infinity ? r_lower : r;
     r_upper = r_upper < infinity ? r_upper : r;
-    const float arc = r * fan.cos_elevation[i] * column.width_rad;
+    const float arc = r * rows.cosine[i] * column.width_rad;
     const float slope = std::abs(rays.normal_left[i]) / std::max(std::abs(slant), 1e-20f);
-    const float across = arc * std::min(slope * fan.cos_elevation[i], steepest_azimuth_slope);
+    const float across = arc * std::min(slope * rows.cosine[i], steepest_azimuth_slope);
     const float along = std::abs(r_upper - r_lower);
     const float half = 0.5f * std::sqrt(along * along + across * across);
     const float middle = 0.5f * (r_lower + r_upper);

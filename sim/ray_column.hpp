@@ -22,7 +22,7 @@ struct RayColumn {
   std::vector<int> surface;           ///< index into RayScene::surfaces, 0 for a miss
 
   // Shaded:
-  std::vector<float> energy;         ///< without r^-2 and absorption; 0 for a miss
+  std::vector<float> energy;  ///< without r^-2 and absorption; 0 for a miss
   std::vector<float> cos_incidence;
   std::vector<float> near_m, far_m;  ///< ranges that the ray's footprint covers
 };
@@ -33,10 +33,10 @@ struct RayAxes {
 };
 
 /// Casts the rays of one column up to `reach_m`.
-void cast_column(const RayScene& scene, const RayFan& fan, const RayAxes& axes, const RayFan::Column& column,
+void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::Column& column, const RayAxes& axes,
                  float reach_m, RayColumn& rays);
 
 /// Energy and footprint of every ray of a cast column.
-void shade_column(const RayScene& scene, const RayFan& fan, const RayFan::Column& column, RayColumn& rays);
+void shade_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::Column& column, RayColumn& rays);
 
 }  // namespace ensonify

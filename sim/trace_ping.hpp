@@ -29,6 +29,8 @@ class PingTracer {
   const RayFan& fan() const { return fan_; }
 
  private:
+  PingTruth empty_truth() const;
+
   const RayScene* scene_;
   SonarGeometry geometry_;
   RayFan fan_;

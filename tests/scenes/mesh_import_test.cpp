@@ -149,6 +149,25 @@ TEST(MeshImport, RefusesWhatIsNoMesh) {
   expect_refused(scratch.write("index.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 99999\n"));
 }
 
+TEST(MeshImport, RefusesFacesWithoutCorners) {
+  const ScratchFolder scratch;
+  const std::string ply = box_ply();
+  expect_refused(scratch.write("empty_face.ply", ply.substr(0, ply.rfind("3 1 7 5")) + "0\n"), "a face has no corners");
+}
+
+TEST(MeshImport, RefusesCountsBeyondTheData) {
+  const ScratchFolder scratch;
+  expect_refused(scratch.write("twice.ply", "ply\nformat ascii 1.0\nelement vertex 1\n" + box_ply().substr(21)));
+  const auto with = [](const std::string& old_text, const std::string& new_text) {
+    std::string dae = box_dae("", "");
+    return dae.replace(dae.find(old_text), old_text.size(), new_text);
+  };
+  expect_refused(scratch.write("accessor.dae", with("count=\"8\"", "count=\"80\"")), "beyond its array");
+  expect_refused(scratch.write("stride.dae", with("stride=\"3\"", "stride=\"30\"")), "beyond its array");
+  expect_refused(scratch.write("array.dae", with("count=\"24\"", "count=\"-1\"")), "no whole number");
+  expect_refused(scratch.write("huge.dae", with("count=\"24\"", "count=\"4000000000\"")), "larger than the file");
+}
+
 TEST(MeshImport, RefusesFilesCutShort) {
   const ScratchFolder scratch;
   const auto cut = [](const std::string& bytes, double share) {
@@ -180,8 +199,8 @@ TEST(MeshImport, RefusesFilesThatReachOutsideOrContainThemselves) {
 
   std::string doubled;  // 2^40 boxes
   for (int level = 0; level < 40; ++level) {
-    const std::string next = R"(<instance_node url="#d)" + std::to_string(level + 1) + R"("/>)";
-    doubled += "<node id=\"d" + std::to_string(level) + "\">" + next + next + "</node>";
+    const std::string next = std::string(R"(<instance_node url="#d)") + std::to_string(level + 1) + R"("/>)";
+    doubled += std::string("<node id=\"d") + std::to_string(level) + "\">" + next + next + "</node>";
   }
   expect_refused(scratch.write("bomb.dae", box_dae("", "", doubled + R"(<node id="d40"/>)")));
 }

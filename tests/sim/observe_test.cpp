@@ -23,22 +23,27 @@ SonarGeometry geometry(double range_min_m, double range_max_m, double width_deg,
   return g;
 }
 
+float elevation_of(const PingTruth& truth, int row, int column) {
+  return truth.lowest_elevation_rad[column] + static_cast<float>(row) * truth.elevation_step_rad;
+}
+
 /// Rays wider than the frustum by a tenth; `range_m(direction)` gives the first hit.
 PingTruth truth_of(const SonarGeometry& g, const std::function<double(double, double)>& range_m, int rows = 64,
                    int columns = 512) {
   PingTruth truth;
   const double width = 1.1 * (g.beam_edges_rad().front() - g.beam_edges_rad().back());
   const double height = 1.1 * g.elevation_fov_rad;
-  for (int r = 0; r < rows; ++r)
-    truth.ray_elevation_rad.push_back(static_cast<float>(height * ((r + 0.5) / rows - 0.5)));
+  truth.elevation_step_rad = static_cast<float>(height / rows);
   for (int c = 0; c < columns; ++c) {
     const double u = 1 - 2 * (c + 0.5) / columns;  // uniform in the sine, as real beam tables are
     truth.ray_azimuth_rad.push_back(static_cast<float>(std::asin(u * std::sin(0.5 * width))));
+    const double stagger = 0.25 * (c % 3 - 1);  // neighbouring columns look at different heights
+    truth.lowest_elevation_rad.push_back(static_cast<float>(height * ((0.5 + stagger) / rows - 0.5)));
   }
   truth.first_hit_range_m = Image2<float>(rows, columns);
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < columns; ++c) {
-      const double range = range_m(truth.ray_azimuth_rad[c], truth.ray_elevation_rad[r]);
+      const double range = range_m(truth.ray_azimuth_rad[c], elevation_of(truth, r, c));
       truth.first_hit_range_m(r, c) = range <= g.range_max_m ? static_cast<float>(range) : miss;
     }
   }
@@ -87,17 +92,20 @@ TEST(Observe, SameAsTheDefinitionCellByCell) {
   mark_observed(truth, g, pose, grid);
   for_each_cell(grid, [&](int x, int y, int z, std::size_t i) {
     const Spherical s = to_spherical(pose.inverse() * grid.frame.centre_m(x, y, z));
-    const auto nearest = [](const std::vector<float>& rays, double angle) {
-      std::size_t best = 0;
-      for (std::size_t r = 1; r < rays.size(); ++r) {
-        if (std::abs(rays[r] - angle) < std::abs(rays[best] - angle)) best = r;
+    const auto nearest = [](int count, const auto& angle_of, double angle) {
+      int best = 0;
+      for (int k = 1; k < count; ++k) {
+        if (std::abs(angle_of(k) - angle) < std::abs(angle_of(best) - angle)) best = k;
       }
-      return static_cast<int>(best);
+      return best;
     };
+    const int column = nearest(
+        truth.first_hit_range_m.columns(), [&](int c) { return truth.ray_azimuth_rad[c]; }, s.azimuth_rad);
+    const int row = nearest(
+        truth.first_hit_range_m.rows(), [&](int r) { return elevation_of(truth, r, column); }, s.elevation_rad);
     const bool inside = s.range_m >= 0.3 && s.range_m <= 2.4 && std::abs(s.azimuth_rad) <= radians(35) &&
                         std::abs(s.elevation_rad) <= radians(15);
-    const bool clear = s.range_m < truth.first_hit_range_m(nearest(truth.ray_elevation_rad, s.elevation_rad),
-                                                           nearest(truth.ray_azimuth_rad, s.azimuth_rad));
+    const bool clear = s.range_m < truth.first_hit_range_m(row, column);
     ASSERT_EQ(grid.observable[i] != 0, inside && clear);
   });
 }

@@ -1,0 +1,108 @@
+#include "ensonify/sim/beam_echo.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace ensonify {
+namespace {
+
+/// Exponent of range in the energy that a Lambert plane sends back a metre of range, before r^-2 and absorption:
+/// cos i and d phi / d r fall as r^-1 and r^-2.
+constexpr float lambert_exponent = -3.0f;
+/// Keeps the density of a very long footprint positive.
+constexpr float steepest_slope = -1.8f;
+
+/// Calls give(bin, energy) for the range bins that a ray's footprint covers. Density falls linearly over it; what lies
+/// outside of the window is lost.
+template <typename Give>
+inline void spread(const RayColumn& rays, int i, const RangeBins& bins, const Give& give) {
+  const float near = bins.place_of(rays.near_m[i]);
+  const float far = bins.place_of(rays.far_m[i]);
+  const auto count = static_cast<float>(bins.count);
+  if (!(far > 0.0f && near < count)) return;
+  const int first = static_cast<int>(std::max(near, 0.0f));
+  const int last = std::min(static_cast<int>(far), bins.count - 1);
+  const float energy = rays.energy[i];
+  if (first == last && near >= 0.0f && far <= count) {
+    give(first, energy);
+    return;
+  }
+  const float inverse_width = 1.0f / (far - near);
+  const float slope =
+      std::max(lambert_exponent * (rays.far_m[i] - rays.near_m[i]) / rays.range_m[i + 1], steepest_slope);
+  const auto share_below = [&](float x) {
+    const float u = std::min((x - near) * inverse_width, 1.0f);
+    return u + 0.5f * slope * (u * u - u);
+  };
+  float below = near < 0.0f ? share_below(0.0f) : 0.0f;
+  for (int bin = first; bin <= last; ++bin) {
+    const float up_to = share_below(static_cast<float>(bin + 1));
+    give(bin, energy * (up_to - below));
+    below = up_to;
+  }
+}
+
+}  // namespace
+
+void add_energy(const RayColumn& rays, const RangeBins& bins, float* energy) {
+  for (int i = 0; i < rays.rays; ++i) {
+    spread(rays, i, bins, [&](int bin, float share) { energy[bin] += share; });
+  }
+}
+
+void ShadowCount::clear() {
+  std::fill(hits_in_bin_.begin(), hits_in_bin_.end(), 0);
+  hits_before_window_ = 0;
+  rays_ = 0;
+}
+
+void ShadowCount::add(const RayColumn& rays, const RayFan::Rows& rows, const RangeBins& bins) {
+  rays_ += rows.last_nominal - rows.first_nominal;
+  for (int i = rows.first_nominal; i < rows.last_nominal; ++i) {
+    const float place = bins.place_of(rays.range_m[i + 1]);
+    if (place < 0.0f)
+      ++hits_before_window_;
+    else if (place < static_cast<float>(bins.count))
+      ++hits_in_bin_[static_cast<std::size_t>(place)];
+  }
+}
+
+int ShadowCount::start_bin() const {
+  const int bins = static_cast<int>(hits_in_bin_.size());
+  int ended = hits_before_window_;
+  for (int bin = 0; bin < bins; ++bin) {
+    if (2 * ended >= rays_) return bin;
+    ended += hits_in_bin_[bin];
+  }
+  return bins;
+}
+
+CellTruth::CellTruth(int bins, int beams, PingTruth& truth) : truth_(&truth), strongest_(bins, beams) {
+  constexpr float nan = std::numeric_limits<float>::quiet_NaN();
+  truth.elevation_min_rad = Image2<float>(bins, beams, nan);
+  truth.elevation_max_rad = Image2<float>(bins, beams, nan);
+  truth.elevation_strongest_rad = Image2<float>(bins, beams, nan);
+  truth.incidence_rad = Image2<float>(bins, beams, nan);
+  truth.instance = Image2<std::int32_t>(bins, beams, -1);
+}
+
+void CellTruth::add(const RayColumn& rays, const RayFan::Rows& rows, const RangeBins& bins, const RayScene& scene,
+                    int beam) {
+  for (int i = 0; i < rays.rays; ++i) {
+    const float phi = rows.elevation_rad[i];
+    spread(rays, i, bins, [&](int bin, float share) {
+      float& lowest = truth_->elevation_min_rad(bin, beam);
+      float& highest = truth_->elevation_max_rad(bin, beam);
+      if (!(lowest <= phi)) lowest = phi;
+      if (!(highest >= phi)) highest = phi;
+      if (share <= strongest_(bin, beam)) return;
+      strongest_(bin, beam) = share;
+      truth_->elevation_strongest_rad(bin, beam) = phi;
+      truth_->incidence_rad(bin, beam) = std::acos(rays.cos_incidence[i]);
+      truth_->instance(bin, beam) = scene.surfaces()[rays.surface[i]].instance;
+    });
+  }
+}
+
+}  // namespace ensonify

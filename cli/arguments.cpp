@@ -14,17 +14,33 @@
 
 namespace ensonify::cli {
 
+CLI::Validator whole_number() { return CLI::Range(std::uint64_t{0}, std::uint64_t{9'000'000'000'000'000}); }
+
+CLI::Validator above_zero() {
+  return {[](std::string& text) {
+            double number = 0;
+            const bool good = CLI::detail::lexical_cast(text, number) && std::isfinite(number) && number > 0.0;
+            return good ? std::string() : fmt::format("must be a finite number above 0, not {}", text);
+          },
+          "POSITIVE"};
+}
+
+CLI::Validator some_path() {
+  return {[](std::string& text) { return text.empty() ? std::string("must not be empty") : std::string(); }, "PATH"};
+}
+
 Pose parse_pose(const std::string& text) {
   std::string blanks = text;
   std::replace(blanks.begin(), blanks.end(), ',', ' ');
   std::istringstream in(blanks);
   std::vector<double> v;
   for (double number = 0; in >> number;) v.push_back(number);
-  const bool finite = std::all_of(v.begin(), v.end(), [](double x) { return std::isfinite(x); });
-  if (!in.eof() || v.size() != 6 || !finite) {
+  constexpr double far_off = 1e5;  // single precision ends to tell millimetres apart long before
+  const bool sane = std::all_of(v.begin(), v.end(), [](double x) { return std::abs(x) <= far_off; });
+  if (!in.eof() || v.size() != 6 || !sane) {
     throw ConfigError(
         fmt::format("--pose \"{}\": must be six numbers, \"x y z roll pitch yaw\", metres and degrees "
-                    "(z up, 0 at the water surface; positive pitch is nose down)",
+                    "(z up, 0 at the water surface; positive pitch is nose down), none beyond 100000",
                     text));
   }
   return pose_from_xyz_rpy({v[0], v[1], v[2]}, radians(v[3]), radians(v[4]), radians(v[5]));

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <string>
 
@@ -7,6 +8,13 @@
 #include "ensonify/scenes/scene.hpp"
 
 namespace ensonify::cli {
+
+/// A seed or layout number: whole, not negative, exact in JSON.
+CLI::Validator whole_number();
+/// A finite number above 0.
+CLI::Validator above_zero();
+/// A path that is not empty.
+CLI::Validator some_path();
 
 /// "x y z roll pitch yaw", metres and degrees, blanks or commas between. Throws ConfigError.
 Pose parse_pose(const std::string& text);

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 
+#include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/cli/progress.hpp"
 #include "ensonify/cli/signals.hpp"
@@ -96,7 +97,7 @@ void add_generate(CLI::App& app) {
   auto* command = app.add_subcommand("generate", "Make a dataset from a recipe; the same command again resumes");
   auto a = std::make_shared<Arguments>();
   command->add_option("RECIPE", a->recipe, "Recipe YAML, or a bundled name: paper, quick")->required();
-  command->add_option("--out", a->out, "Folder of the dataset")->required();
+  command->add_option("--out", a->out, "Folder of the dataset")->required()->check(some_path());
   command->add_option("--pairs", a->pairs, "Training pairs instead of the recipe's")->check(CLI::Range(1, 100'000'000));
   command->add_option("--seed", a->seed, "Seed instead of the recipe's")
       ->check(CLI::Range(std::int64_t{0}, std::int64_t{9'000'000'000'000'000}));

@@ -115,11 +115,12 @@ void add_ping(CLI::App& app) {
   command
       ->add_option("--out", a->out,
                    "Folder for raw.png clean.png mask.png labels.png fan.png echo.exr truth.exr ping.json")
-      ->required();
+      ->required()
+      ->check(some_path());
   command->add_option("--noise", a->noise, "Noise YAML or bundled name: paper, none")->capture_default_str();
-  command->add_option("--seed", a->seed, "Seed of the noise")->capture_default_str();
-  command->add_option("--layout", a->layout, "Layout of the scene")->capture_default_str();
-  command->add_option("--range-max", a->range_max_m, "End of the range window in metres")->check(CLI::PositiveNumber);
+  command->add_option("--seed", a->seed, "Seed of the noise")->check(whole_number())->capture_default_str();
+  command->add_option("--layout", a->layout, "Layout of the scene")->check(whole_number())->capture_default_str();
+  command->add_option("--range-max", a->range_max_m, "End of the range window in metres")->check(above_zero());
   command->add_option("--range-bins", a->range_bins, "Range bins of the image, or native")
       ->check(CLI::IsMember({"native"}) | CLI::Range(1, 16384));
   command->add_option("--isa", a->isa, "Instruction set of the ray caster")

@@ -69,7 +69,7 @@ void add_scene(CLI::App& app) {
   auto scene = std::make_shared<std::string>();
   auto layout = std::make_shared<std::uint64_t>(0);
   sub->add_option("SCENE", *scene, "Scene YAML, bundled name, or a mesh file")->required();
-  sub->add_option("--layout", *layout, "Layout of the scene")->capture_default_str();
+  sub->add_option("--layout", *layout, "Layout of the scene")->check(whole_number())->capture_default_str();
   sub->footer("Example:\n  ensonify scene check pier_harbor --layout 3");
   sub->callback([scene, layout] { check(*scene, *layout); });
 }

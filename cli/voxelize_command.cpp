@@ -47,11 +47,11 @@ void add_voxelize(CLI::App& app) {
   auto* command = app.add_subcommand("voxelize", "Ground-truth occupancy of a scene or a mesh");
   auto a = std::make_shared<Arguments>();
   command->add_option("SCENE_OR_MESH", a->scene, "Scene YAML, bundled name, or a mesh file")->required();
-  command->add_option("--resolution", a->resolution_m, "Edge of a cell in metres")
+  command->add_option("--resolution", a->resolution_m, "Edge of a cell in metres")->required()->check(above_zero());
+  command->add_option("--out", a->out, "File: .npz, .bt (OctoMap), .pgm (nav2, with .yaml), .ply or .vdb")
       ->required()
-      ->check(CLI::PositiveNumber);
-  command->add_option("--out", a->out, "File: .npz, .bt (OctoMap), .pgm (nav2, with .yaml), .ply or .vdb")->required();
-  command->add_option("--layout", a->layout, "Layout of the scene")->capture_default_str();
+      ->check(some_path());
+  command->add_option("--layout", a->layout, "Layout of the scene")->check(whole_number())->capture_default_str();
   command->add_option("--slice-z", a->slice_z_m, ".pgm: height of the slice in metres (default: middle of the grid)");
   command->footer("Example:\n  ensonify voxelize test_tank --resolution 0.05 --out out/tank.npz");
   command->callback([a] { run(*a); });

@@ -65,6 +65,7 @@ fs::path DatasetPaths::grid(const std::string& place, const std::string& extensi
 
 void open_dataset(const DatasetPaths& paths, const std::string& plan, bool force) {
   std::error_code error;
+  if (paths.root.empty()) throw ConfigError("--out: must name a folder");
   const bool ours = fs::is_regular_file(paths.plan(), error);
   if (fs::exists(paths.root, error) && !fs::is_directory(paths.root, error)) {
     throw ConfigError(fmt::format("--out {}: is a file, not a folder", paths.root.string()));

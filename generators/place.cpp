@@ -25,7 +25,8 @@ bool has_room(const OccupancyGrid& truth, const Vec3& p_world, double radius_m) 
       for (int ix = low[0]; ix <= high[0]; ++ix) {
         if (truth.occupancy[frame.index(ix, iy, iz)] == static_cast<std::uint8_t>(Occupancy::free)) continue;
         const Vec3 beyond = ((p_world - frame.centre_m(ix, iy, iz)).cwiseAbs() - half).cwiseMax(0.0);
-        if (beyond.norm() <= radius_m) return false;
+        // A point on the border of a cell is in it, whatever rounding says.
+        if (beyond.norm() <= radius_m + 1e-9) return false;
       }
     }
   }

@@ -265,12 +265,13 @@ class Configuration(ProgramTest):
                     self.refuse(2, [name, *fragments], command, "check", name)
 
     def test_a_trajectory_inside_a_wall_is_found_before_any_work(self):
-        self.write("block.yaml", changed(SCENE, "[4, -4, -2, 0, 10, 135]", "[0, 0, -3, 0, 10, 135]"))
+        scene = changed(SCENE, "x_m: {uniform: [-1, 1]}", "x_m: 0")
+        self.write("block.yaml", changed(scene, "[4, -4, -2, 0, 10, 135]", "[0, 0, -3, 0, 10, 135]"))
         self.recipe("wall.yaml", train=4, test=40)
         self.refuse(2, ["block", "trajectory runs into something", "move its waypoints"], "generate", "wall.yaml", "--out",
                     "wall")
         self.assertFalse((self.folder / "wall/train").exists())
-        self.refuse(2, ["waypoint 1 lies inside something"], "scene", "check", "block.yaml", "--layout", 2)
+        self.refuse(2, ["waypoint 1 lies inside something"], "scene", "check", "block.yaml")
 
     def test_a_place_without_room_fails_and_says_what_to_change(self):
         self.write("block.yaml", SCENE + "  - [0, -4, -2, 0, 0, 90]\n")

@@ -18,6 +18,14 @@ namespace fs = std::filesystem;
 constexpr std::array own_entries{"dataset.json", ".ensonify/blocks", "train",          "val",      "test",
                                  "grids",        "README.md",        "croissant.json", ".ensonify"};
 
+bool holds_more_than_state(const DatasetPaths& paths) {
+  std::error_code error;
+  for (fs::directory_iterator entry(paths.root, error), end; !error && entry != end; entry.increment(error)) {
+    if (entry->path().filename() != paths.state().filename()) return true;
+  }
+  return false;
+}
+
 }  // namespace
 
 std::vector<Block> plan_blocks(const Recipe& recipe, SampleFormat format) {
@@ -66,11 +74,13 @@ fs::path DatasetPaths::grid(const std::string& place, const std::string& extensi
 void open_dataset(const DatasetPaths& paths, const std::string& plan, bool force) {
   std::error_code error;
   if (paths.root.empty()) throw ConfigError("--out: must name a folder");
+  // In this order: another shard that starts now writes its plan before anything else.
+  const bool in_use = holds_more_than_state(paths);
   const bool ours = fs::is_regular_file(paths.plan(), error);
   if (fs::exists(paths.root, error) && !fs::is_directory(paths.root, error)) {
     throw ConfigError(fmt::format("--out {}: is a file, not a folder", paths.root.string()));
   }
-  if (!ours && fs::exists(paths.root, error) && !fs::is_empty(paths.root, error)) {
+  if (!ours && in_use) {
     throw ConfigError(fmt::format("--out {}: holds other files; name a new or empty folder", paths.root.string()));
   }
   if (ours && !force && read_text(paths.plan()) != plan) {

@@ -24,6 +24,7 @@ RayColumn::RayColumn(int count)
       normal_left(static_cast<std::size_t>(count)),
       inverse_norm(static_cast<std::size_t>(count)),
       surface(static_cast<std::size_t>(count)),
+      material(static_cast<std::size_t>(count)),
       energy(static_cast<std::size_t>(count)),
       cos_incidence(static_cast<std::size_t>(count)),
       near_m(static_cast<std::size_t>(count)),
@@ -34,6 +35,7 @@ void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::
   const Eigen::Vector3f ahead = column.cosine * axes.forward + column.sine * axes.left;
   const Eigen::Vector3f aside = column.cosine * axes.left - column.sine * axes.forward;
   const Eigen::Vector3f& up = axes.up;
+  const RayScene::Surface* surfaces = scene.surfaces().data();
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -63,7 +65,7 @@ void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::
 
     for (int l = 0; l < packet; ++l) {
       if (hit.hit.instID[0][l] == RTC_INVALID_GEOMETRY_ID) continue;
-      const RayScene::Surface& surface = scene.surfaces()[hit.hit.instID[0][l]];
+      const RayScene::Surface& surface = surfaces[hit.hit.instID[0][l]];
       const Eigen::Vector3f n =
           surface.normal_to_world * Eigen::Vector3f(hit.hit.Ng_x[l], hit.hit.Ng_y[l], hit.hit.Ng_z[l]);
       hit.hit.Ng_x[l] = n.x();
@@ -77,8 +79,10 @@ void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::
       const float ny = hit.hit.Ng_y[l];
       const float nz = hit.hit.Ng_z[l];
       const int i = first + l;
+      const int surface = met ? static_cast<int>(hit.hit.geomID[l]) : 0;
+      rays.surface[i] = surface;
+      rays.material[i] = surfaces[surface].material;
       rays.range_m[i + 1] = met ? hit.ray.tfar[l] : infinity;
-      rays.surface[i] = met ? static_cast<int>(hit.hit.geomID[l]) : 0;
       rays.normal_forward[i] = met ? nx * ahead.x() + ny * ahead.y() + nz * ahead.z() : 1.0f;
       rays.normal_up[i] = met ? nx * up.x() + ny * up.y() + nz * up.z() : 0.0f;
       rays.normal_left[i] = met ? nx * aside.x() + ny * aside.y() + nz * aside.z() : 0.0f;
@@ -88,41 +92,58 @@ void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::
 }
 
 void shade_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::Column& column, RayColumn& rays) {
-  const float* table = scene.scatter_table().data();
-  const RayScene::Surface* surfaces = scene.surfaces().data();
+  // The arrays do not overlap: said, so that the loops become vector code.
+  const float* __restrict range = rays.range_m.data() + 1;
+  const float* __restrict ahead = rays.normal_forward.data();
+  const float* __restrict up = rays.normal_up.data();
+  const float* __restrict left = rays.normal_left.data();
+  const float* __restrict inverse_norm = rays.inverse_norm.data();
+  const int* __restrict material = rays.material.data();
+  float* __restrict energy = rays.energy.data();
+  float* __restrict cos_incidence = rays.cos_incidence.data();
+  float* __restrict near_m = rays.near_m.data();
+  float* __restrict far_m = rays.far_m.data();
+  const float* __restrict cosine = rows.cosine.data();
+  const float* __restrict sine = rows.sine.data();
+  const float* __restrict edge_cosine = rows.edge_cosine.data();
+  const float* __restrict edge_sine = rows.edge_sine.data();
+  const float* __restrict gain = rows.gain.data();
+  const float* __restrict table = scene.scatter_table().data();
   const float column_gain = column.gain * column.width_rad;
-  for (int i = 0; i < rays.rays; ++i) {
-    const float slant = rays.normal_forward[i] * rows.cosine[i] + rays.normal_up[i] * rows.sine[i];
-    const float cosine = std::min(std::abs(slant) * rays.inverse_norm[i], 1.0f);
-    const float place = std::sqrt(1.0f - cosine) * static_cast<float>(RayScene::scatter_steps);
+  const int count = rays.rays;
+
+  for (int i = 0; i < count; ++i) {
+    const float slant = ahead[i] * cosine[i] + up[i] * sine[i];
+    const float incidence = std::min(std::abs(slant) * inverse_norm[i], 1.0f);
+    const float place = std::sqrt(1.0f - incidence) * static_cast<float>(RayScene::scatter_steps);
     const int step = static_cast<int>(place);
-    const float* entry = table + (surfaces[rays.surface[i]].material * RayScene::scatter_stride + step);
-    const float scatter = entry[0] + (place - static_cast<float>(step)) * (entry[1] - entry[0]);
-    rays.cos_incidence[i] = cosine;
-    rays.energy[i] = rays.range_m[i + 1] < infinity ? scatter * rows.gain[i] * column_gain : 0.0f;
+    const int entry = material[i] * RayScene::scatter_stride + step;
+    const float scatter = table[entry] + (place - static_cast<float>(step)) * (table[entry + 1] - table[entry]);
+    cos_incidence[i] = incidence;
+    energy[i] = range[i] < infinity ? scatter * gain[i] * column_gain : 0.0f;
   }
-  for (int i = 0; i < rays.rays; ++i) {
-    // On the tangent plane n . (r d) is constant, so r at a border is r n.d / n.d_border.
-    const float r = rays.range_m[i + 1];
-    const float slant = rays.normal_forward[i] * rows.cosine[i] + rays.normal_up[i] * rows.sine[i];
-    const float lower = rays.normal_forward[i] * rows.edge_cosine[i] + rays.normal_up[i] * rows.edge_sine[i];
-    const float upper = rays.normal_forward[i] * rows.edge_cosine[i + 1] + rays.normal_up[i] * rows.edge_sine[i + 1];
-    const float below = rays.range_m[i];
-    const float above = rays.range_m[i + 2];
-    float r_lower = slant * lower > 0.0f ? r * (slant / lower) : infinity;
-    float r_upper = slant * upper > 0.0f ? r * (slant / upper) : infinity;
-    r_lower = std::min(std::max(r_lower, std::min(r, below)), std::max(r, below));
-    r_upper = std::min(std::max(r_upper, std::min(r, above)), std::max(r, above));
-    r_lower = r_lower < infinity ? r_lower : r;
-    r_upper = r_upper < infinity ? r_upper : r;
-    const float arc = r * rows.cosine[i] * column.width_rad;
-    const float slope = std::abs(rays.normal_left[i]) / std::max(std::abs(slant), 1e-20f);
-    const float across = arc * std::min(slope * rows.cosine[i], steepest_azimuth_slope);
-    const float along = std::abs(r_upper - r_lower);
+  for (int i = 0; i < count; ++i) {
+    // On the tangent plane n . (r d) is constant, so r at a border is r n.d / n.d_border; a plane that the border
+    // misses gives a negative or infinite r, taken as infinity.
+    const float r = range[i];
+    const float slant = ahead[i] * cosine[i] + up[i] * sine[i];
+    const float below = range[i - 1];
+    const float above = range[i + 1];
+    const float at_lower = r * (slant / (ahead[i] * edge_cosine[i] + up[i] * edge_sine[i]));
+    const float at_upper = r * (slant / (ahead[i] * edge_cosine[i + 1] + up[i] * edge_sine[i + 1]));
+    float lower = at_lower > 0.0f ? at_lower : infinity;
+    float upper = at_upper > 0.0f ? at_upper : infinity;
+    lower = std::min(std::max(lower, std::min(r, below)), std::max(r, below));
+    upper = std::min(std::max(upper, std::min(r, above)), std::max(r, above));
+    lower = lower < infinity ? lower : r;
+    upper = upper < infinity ? upper : r;
+    const float slope = std::abs(left[i]) / std::max(std::abs(slant), 1e-20f);
+    const float across = r * cosine[i] * column.width_rad * std::min(slope * cosine[i], steepest_azimuth_slope);
+    const float along = upper - lower;
     const float half = 0.5f * std::sqrt(along * along + across * across);
-    const float middle = 0.5f * (r_lower + r_upper);
-    rays.near_m[i] = middle - half;
-    rays.far_m[i] = middle + half;
+    const float middle = 0.5f * (lower + upper);
+    near_m[i] = middle - half;
+    far_m[i] = middle + half;
   }
 }
 

@@ -1,15 +1,42 @@
-#include <fmt/core.h>
+#include <fmt/format.h>
 #include <fmt/ostream.h>
+#include <fmt/ranges.h>
 
+#include <algorithm>
 #include <exception>
 #include <iostream>
 #include <new>
+#include <string>
+#include <vector>
 
 #include "ensonify/cli/commands.hpp"
+#include "ensonify/config/reader.hpp"
 #include "ensonify/core/error.hpp"
 
+namespace {
+
+using namespace ensonify;
+
+/// CLI11 only says that a subcommand is missing where one is misspelt: names the word and the nearest command.
+void check_command(const CLI::App& app, const std::vector<std::string>& words) {
+  if (words.empty() || words[0].starts_with('-')) return;
+  std::vector<std::string> names;
+  for (const CLI::App* command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    names.push_back(command->get_name());
+  }
+  if (names.empty()) return;
+  if (const auto found = std::find(names.begin(), names.end(), words[0]); found != names.end()) {
+    return check_command(*app.get_subcommand(words[0]), {words.begin() + 1, words.end()});
+  }
+  const std::string nearest = nearest_word(words[0], names);
+  throw ConfigError(fmt::format("no command '{}'; {}", words[0],
+                                nearest.empty() ? fmt::format("there are {}", fmt::join(names, ", "))
+                                                : fmt::format("did you mean '{}'?", nearest)));
+}
+
+}  // namespace
+
 int main(int argc, char** argv) {
-  using namespace ensonify;
   CLI::App app(
       "ensonify simulates multibeam imaging sonars on the CPU: scenes in, sonar images with masks, labels and\n"
       "occupancy truth out.");
@@ -26,6 +53,7 @@ int main(int argc, char** argv) {
   cli::add_verify(app);
   cli::add_voxelize(app);
   try {
+    check_command(app, {argv + std::min(argc, 1), argv + argc});
     app.parse(argc, argv);
     return 0;
   } catch (const CLI::ParseError& e) {

@@ -62,7 +62,9 @@ void add_scene(CLI::App& app) {
   auto* command = app.add_subcommand("scene", "List the bundled scenes, or check one of your own");
   command->require_subcommand(1);
   command->footer("Example:\n  ensonify scene list\n  ensonify scene check my_scene.yaml");
-  command->add_subcommand("list", "Names and titles of the bundled scenes")->callback(list);
+  auto* all = command->add_subcommand("list", "Names and titles of the bundled scenes");
+  all->footer("Example:\n  ensonify scene list");
+  all->callback(list);
   auto* sub = command->add_subcommand("check", "Load a scene or mesh and say what is in it, or what is wrong with it");
   auto scene = std::make_shared<std::string>();
   auto layout = std::make_shared<std::uint64_t>(0);

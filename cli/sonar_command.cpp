@@ -40,7 +40,9 @@ void add_sonar(CLI::App& app) {
   auto* command = app.add_subcommand("sonar", "List the bundled sonars, or check one of your own");
   command->require_subcommand(1);
   command->footer("Example:\n  ensonify sonar list\n  ensonify sonar check my_sonar.yaml");
-  command->add_subcommand("list", "Names and titles of the bundled sonars")->callback(list);
+  auto* all = command->add_subcommand("list", "Names and titles of the bundled sonars");
+  all->footer("Example:\n  ensonify sonar list");
+  all->callback(list);
   auto* sub = command->add_subcommand("check", "Load a sonar and say what it is, or what is wrong with it");
   auto sonar = std::make_shared<std::string>();
   sub->add_option("SONAR", *sonar, "Sonar YAML or bundled name")->required();

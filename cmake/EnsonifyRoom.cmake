@@ -59,6 +59,9 @@ function(ensonify_room room)
   install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/ensonify/${room}
     FILES_MATCHING PATTERN "*.hpp" PATTERN library EXCLUDE)
   if(EXISTS ${CMAKE_CURRENT_SOURCE_DIR}/library)
+    # Programs look for share/ensonify beside and above themselves, in the build tree as where they are installed.
+    file(MAKE_DIRECTORY ${PROJECT_BINARY_DIR}/share/ensonify)
+    file(CREATE_LINK ${CMAKE_CURRENT_SOURCE_DIR} ${PROJECT_BINARY_DIR}/share/ensonify/${room} SYMBOLIC)
     install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/library
       DESTINATION ${CMAKE_INSTALL_DATADIR}/ensonify/${room})
   endif()

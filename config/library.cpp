@@ -1,27 +1,55 @@
 #include "ensonify/config/library.hpp"
 
+#include <dlfcn.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 
 #include "ensonify/config/paths.hpp"
 #include "ensonify/config/reader.hpp"
 #include "ensonify/core/error.hpp"
 
+/// Defined in programs that found ensonify with CMake (see cmake/ensonifyConfig.cmake.in), else null.
+extern "C" __attribute__((weak)) const char* ensonify_package_data_folder();
+
 namespace ensonify {
 namespace fs = std::filesystem;
+namespace {
 
-fs::path library_folder(const std::string& kind) {
+/// The file that holds this code: a program, or a shared object that a program loaded.
+fs::path own_file() {
   std::error_code no_throw;
-  if (const char* data = std::getenv("ENSONIFY_DATA"); data != nullptr && *data != '\0') {
-    return fs::path(data) / kind / "library";
+  Dl_info here{};
+  if (::dladdr(reinterpret_cast<const void*>(&library_folder), &here) != 0 && here.dli_fname != nullptr) {
+    const fs::path named = here.dli_fname;
+    if (named.is_absolute()) return fs::weakly_canonical(named, no_throw);
   }
-  const fs::path source = fs::path(source_data_folder) / kind / "library";
-  const fs::path installed = fs::path(installed_data_folder) / kind / "library";
-  return fs::is_directory(source, no_throw) ? source : installed;
+  return fs::read_symlink("/proc/self/exe", no_throw);
 }
+
+/// share/ensonify beside or above the program: the prefix it is installed in, or its build folder.
+std::optional<fs::path> data_near_program() {
+  std::error_code no_throw;
+  constexpr int levels = 4;
+  fs::path folder = own_file().parent_path();
+  for (int i = 0; i < levels && !folder.empty(); ++i, folder = folder.parent_path()) {
+    if (fs::path data = folder / "share" / "ensonify"; fs::is_directory(data, no_throw)) return data;
+  }
+  return std::nullopt;
+}
+
+fs::path data_folder() {
+  if (const char* data = std::getenv("ENSONIFY_DATA"); data != nullptr && *data != '\0') return data;
+  if (ensonify_package_data_folder != nullptr) return ensonify_package_data_folder();
+  return data_near_program().value_or(installed_data_folder);
+}
+
+}  // namespace
+
+fs::path library_folder(const std::string& kind) { return data_folder() / kind / "library"; }
 
 std::vector<std::string> library_names(const std::string& kind) {
   std::vector<std::string> names;

@@ -6,7 +6,8 @@
 
 namespace ensonify {
 
-/// Where bundled YAML lives: $ENSONIFY_DATA, else the installed share folder, else the source tree.
+/// Where bundled YAML lives: $ENSONIFY_DATA; else the package that the program was built with (find_package); else
+/// share/ensonify beside or above the program; else where the build was to be installed.
 /// `kind` is scenes, sensor_models, noise or generators; the files are in <data>/<kind>/library/*.yaml.
 std::filesystem::path library_folder(const std::string& kind);
 

@@ -247,7 +247,7 @@ void Reader::finish() const {
 
 std::string Reader::where(std::string_view key) const {
   int line = node_.Mark().line;
-  for (const auto& entry : node_) {
+  for (const auto& entry : node_.IsMap() ? node_ : YAML::Node(YAML::NodeType::Map)) {
     if (entry.first.IsScalar() && entry.first.Scalar() == key) line = entry.first.Mark().line;
   }
   std::string place = fmt::format("{}:{}", source_->name, line + 1);

@@ -14,8 +14,9 @@ namespace ensonify {
 namespace {
 
 namespace fs = std::filesystem;
-constexpr std::array own_entries{"train",        "val",       "test",           "grids",
-                                 "dataset.json", "README.md", "croissant.json", ".ensonify"};
+/// In the order of removal: first what says that the set, or a part of it, is there.
+constexpr std::array own_entries{"dataset.json", ".ensonify/blocks", "train",          "val",      "test",
+                                 "grids",        "README.md",        "croissant.json", ".ensonify"};
 
 }  // namespace
 
@@ -36,6 +37,7 @@ std::vector<Block> plan_blocks(const Recipe& recipe, SampleFormat format) {
 
 std::string plan_json(const FrameMaker& maker, const std::string& isa, SampleFormat format) {
   nlohmann::json plan;
+  plan["tool_version"] = ENSONIFY_VERSION;
   plan["recipe"] = describe(maker.recipe());
   plan["sonar"] = describe(maker.sonar());
   plan["noise"] = describe(maker.noise());

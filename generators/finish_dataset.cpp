@@ -158,6 +158,7 @@ bool finish_dataset(const FrameMaker& maker, const DatasetPaths& paths, const st
                 {"grids", grids},
                 {"root_hash", root.hex()}};
   for (const Split& split : recipe.splits) manifest["counts"][split.name] = split.frames;
+  remove_abandoned(paths.root);
   write_dataset_card(paths, manifest);
   write_croissant(paths, manifest);
   write_file(paths.manifest(), manifest.dump(1) + "\n");

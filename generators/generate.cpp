@@ -58,6 +58,8 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
   }
   const DatasetPaths paths{options.out};
   open_dataset(paths, plan_json(maker, options.isa, options.format), options.force);
+  std::error_code no_throw;
+  if (std::filesystem::is_regular_file(paths.manifest(), no_throw)) return Outcome::complete;
   check_trajectories(maker);
 
   const std::vector<Block> blocks = plan_blocks(recipe, options.format);

@@ -2,9 +2,12 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <unistd.h>
 
+#include <array>
 #include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <fstream>
 #include <string>
@@ -54,14 +57,46 @@ Bytes read_bytes(const fs::path& path, std::size_t max_bytes) {
   return bytes;
 }
 
+/// ".tmp-<machine>-", before the process id.
+std::string temporary_mark() {
+  std::array<char, 256> machine{};
+  ::gethostname(machine.data(), machine.size() - 1);
+  return fmt::format(".tmp-{}-", machine.data());
+}
+
+/// False where `name` is a temporary of a process of this machine that is gone, or of this very process.
+bool is_in_use(std::string_view name, std::string_view mark) {
+  const std::size_t at = name.rfind(mark);
+  if (!name.starts_with('.') || at == std::string_view::npos) return true;
+  const std::string_view digits = name.substr(at + mark.size());
+  pid_t process = 0;
+  const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), process);
+  if (error != std::errc() || end != digits.data() + digits.size() || process <= 0) return true;
+  return process != ::getpid() && (::kill(process, 0) == 0 || errno != ESRCH);
+}
+
 }  // namespace
+
+fs::path temporary_name(const fs::path& path) {
+  return path.parent_path() / fmt::format(".{}{}{}", path.filename().string(), temporary_mark(), ::getpid());
+}
+
+void remove_abandoned(const fs::path& folder) {
+  const std::string mark = temporary_mark();
+  std::error_code error;
+  std::vector<fs::path> abandoned;
+  for (fs::recursive_directory_iterator entry(folder, error), end; !error && entry != end; entry.increment(error)) {
+    if (!is_in_use(entry->path().filename().native(), mark)) abandoned.push_back(entry->path());
+  }
+  for (const fs::path& path : abandoned) fs::remove(path, error);
+}
 
 void write_atomically(const fs::path& path, const std::function<void(const fs::path&)>& write) {
   std::error_code error;
   if (path.has_parent_path()) fs::create_directories(path.parent_path(), error);
   if (error)
     throw DataError(fmt::format("{}: folder can not be made: {}", path.parent_path().string(), error.message()));
-  const fs::path temporary = path.parent_path() / fmt::format(".{}.tmp-{}", path.filename().string(), ::getpid());
+  const fs::path temporary = temporary_name(path);
   try {
     write(temporary);
     fs::rename(temporary, path);

@@ -3,9 +3,9 @@
 #include <archive.h>
 #include <archive_entry.h>
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include "ensonify/core/error.hpp"
+#include "ensonify/output/atomic_file.hpp"
 
 namespace ensonify {
 namespace {
@@ -21,9 +21,7 @@ constexpr la_int64_t max_member_bytes = la_int64_t{1} << 32;
 }  // namespace
 
 TarShard::TarShard(fs::path path)
-    : path_(std::move(path)),
-      temporary_(path_.parent_path() / fmt::format(".{}.tmp-{}", path_.filename().string(), ::getpid())),
-      archive_(archive_write_new()) {
+    : path_(std::move(path)), temporary_(temporary_name(path_)), archive_(archive_write_new()) {
   std::error_code error;
   fs::create_directories(path_.parent_path(), error);
   archive_write_set_format_ustar(archive_);

@@ -14,6 +14,57 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 /// Footprints across azimuth are cut where the surface is met at less than about 7 degrees.
 constexpr float steepest_azimuth_slope = 8.0f;
 
+// By value: std::min and std::max return references, which keep loops from becoming vector code.
+constexpr float least(float a, float b) { return a < b ? a : b; }
+constexpr float most(float a, float b) { return a > b ? a : b; }
+
+// The two loops below become vector code, because their arrays are parameters that are said not to overlap.
+
+/// What each ray's surface sends back (see `shade_column`).
+void scatter(int count, const float* __restrict slant, const float* __restrict inverse_norm,
+             const float* __restrict range, const int* __restrict material, const float* __restrict gain,
+             float column_gain, const float* __restrict table, float* __restrict cos_incidence,
+             float* __restrict energy) {
+  for (int i = 0; i < count; ++i) {
+    const float cosine = least(std::abs(slant[i]) * inverse_norm[i], 1.0f);
+    const float place = std::sqrt(1.0f - cosine) * static_cast<float>(RayScene::scatter_steps);
+    const int step = static_cast<int>(place);
+    const int entry = material[i] * RayScene::scatter_stride + step;
+    const float sent = table[entry] + (place - static_cast<float>(step)) * (table[entry + 1] - table[entry]);
+    cos_incidence[i] = cosine;
+    energy[i] = sent * gain[i] * (range[i] < infinity ? column_gain : 0.0f);
+  }
+}
+
+/// Ranges that each ray's footprint covers. On the tangent plane n . (r d) is constant, so r at a border is
+/// r n.d / n.d_border; a plane that the border misses gives a negative or infinite r, taken as infinity.
+void spread_footprints(int count, const float* __restrict range, const float* __restrict slant,
+                       const float* __restrict ahead, const float* __restrict up, const float* __restrict left,
+                       const float* __restrict cosine, const float* __restrict edge_cosine,
+                       const float* __restrict edge_sine, float width_rad, float* __restrict near_m,
+                       float* __restrict far_m) {
+  for (int i = 0; i < count; ++i) {
+    const float r = range[i];
+    const float below = range[i - 1];
+    const float above = range[i + 1];
+    const float at_lower = r * (slant[i] / (ahead[i] * edge_cosine[i] + up[i] * edge_sine[i]));
+    const float at_upper = r * (slant[i] / (ahead[i] * edge_cosine[i + 1] + up[i] * edge_sine[i + 1]));
+    float lower = at_lower > 0.0f ? at_lower : infinity;
+    float upper = at_upper > 0.0f ? at_upper : infinity;
+    lower = least(most(lower, least(r, below)), most(r, below));
+    upper = least(most(upper, least(r, above)), most(r, above));
+    lower = lower < infinity ? lower : r;
+    upper = upper < infinity ? upper : r;
+    const float slope = std::abs(left[i]) / most(std::abs(slant[i]), 1e-20f);
+    const float across = r * cosine[i] * width_rad * least(slope * cosine[i], steepest_azimuth_slope);
+    const float along = upper - lower;
+    const float half = 0.5f * std::sqrt(along * along + across * across);
+    const float middle = 0.5f * (lower + upper);
+    near_m[i] = middle - half;
+    far_m[i] = middle + half;
+  }
+}
+
 }  // namespace
 
 RayColumn::RayColumn(int count)
@@ -25,6 +76,7 @@ RayColumn::RayColumn(int count)
       inverse_norm(static_cast<std::size_t>(count)),
       surface(static_cast<std::size_t>(count)),
       material(static_cast<std::size_t>(count)),
+      slant(static_cast<std::size_t>(count)),
       energy(static_cast<std::size_t>(count)),
       cos_incidence(static_cast<std::size_t>(count)),
       near_m(static_cast<std::size_t>(count)),
@@ -92,59 +144,15 @@ void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::
 }
 
 void shade_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::Column& column, RayColumn& rays) {
-  // The arrays do not overlap: said, so that the loops become vector code.
-  const float* __restrict range = rays.range_m.data() + 1;
-  const float* __restrict ahead = rays.normal_forward.data();
-  const float* __restrict up = rays.normal_up.data();
-  const float* __restrict left = rays.normal_left.data();
-  const float* __restrict inverse_norm = rays.inverse_norm.data();
-  const int* __restrict material = rays.material.data();
-  float* __restrict energy = rays.energy.data();
-  float* __restrict cos_incidence = rays.cos_incidence.data();
-  float* __restrict near_m = rays.near_m.data();
-  float* __restrict far_m = rays.far_m.data();
-  const float* __restrict cosine = rows.cosine.data();
-  const float* __restrict sine = rows.sine.data();
-  const float* __restrict edge_cosine = rows.edge_cosine.data();
-  const float* __restrict edge_sine = rows.edge_sine.data();
-  const float* __restrict gain = rows.gain.data();
-  const float* __restrict table = scene.scatter_table().data();
-  const float column_gain = column.gain * column.width_rad;
-  const int count = rays.rays;
-
-  for (int i = 0; i < count; ++i) {
-    const float slant = ahead[i] * cosine[i] + up[i] * sine[i];
-    const float incidence = std::min(std::abs(slant) * inverse_norm[i], 1.0f);
-    const float place = std::sqrt(1.0f - incidence) * static_cast<float>(RayScene::scatter_steps);
-    const int step = static_cast<int>(place);
-    const int entry = material[i] * RayScene::scatter_stride + step;
-    const float scatter = table[entry] + (place - static_cast<float>(step)) * (table[entry + 1] - table[entry]);
-    cos_incidence[i] = incidence;
-    energy[i] = range[i] < infinity ? scatter * gain[i] * column_gain : 0.0f;
+  for (int i = 0; i < rays.rays; ++i) {
+    rays.slant[i] = rays.normal_forward[i] * rows.cosine[i] + rays.normal_up[i] * rows.sine[i];
   }
-  for (int i = 0; i < count; ++i) {
-    // On the tangent plane n . (r d) is constant, so r at a border is r n.d / n.d_border; a plane that the border
-    // misses gives a negative or infinite r, taken as infinity.
-    const float r = range[i];
-    const float slant = ahead[i] * cosine[i] + up[i] * sine[i];
-    const float below = range[i - 1];
-    const float above = range[i + 1];
-    const float at_lower = r * (slant / (ahead[i] * edge_cosine[i] + up[i] * edge_sine[i]));
-    const float at_upper = r * (slant / (ahead[i] * edge_cosine[i + 1] + up[i] * edge_sine[i + 1]));
-    float lower = at_lower > 0.0f ? at_lower : infinity;
-    float upper = at_upper > 0.0f ? at_upper : infinity;
-    lower = std::min(std::max(lower, std::min(r, below)), std::max(r, below));
-    upper = std::min(std::max(upper, std::min(r, above)), std::max(r, above));
-    lower = lower < infinity ? lower : r;
-    upper = upper < infinity ? upper : r;
-    const float slope = std::abs(left[i]) / std::max(std::abs(slant), 1e-20f);
-    const float across = r * cosine[i] * column.width_rad * std::min(slope * cosine[i], steepest_azimuth_slope);
-    const float along = upper - lower;
-    const float half = 0.5f * std::sqrt(along * along + across * across);
-    const float middle = 0.5f * (lower + upper);
-    near_m[i] = middle - half;
-    far_m[i] = middle + half;
-  }
+  const float* range_m = rays.range_m.data() + 1;
+  scatter(rays.rays, rays.slant.data(), rays.inverse_norm.data(), range_m, rays.material.data(), rows.gain.data(),
+          column.gain * column.width_rad, scene.scatter_table().data(), rays.cos_incidence.data(), rays.energy.data());
+  spread_footprints(rays.rays, range_m, rays.slant.data(), rays.normal_forward.data(), rays.normal_up.data(),
+                    rays.normal_left.data(), rows.cosine.data(), rows.edge_cosine.data(), rows.edge_sine.data(),
+                    column.width_rad, rays.near_m.data(), rays.far_m.data());
 }
 
 }  // namespace ensonify

@@ -24,6 +24,7 @@ struct RayColumn {
   std::vector<int> material;  ///< of that surface
 
   // Shaded:
+  std::vector<float> slant;   ///< n . d, n not normalised
   std::vector<float> energy;  ///< without r^-2 and absorption; 0 for a miss
   std::vector<float> cos_incidence;
   std::vector<float> near_m, far_m;  ///< ranges that the ray's footprint covers

@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <fstream>
-#include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -23,20 +22,39 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::array kinds{"raw", "clean", "mask", "labels"};
-using FrameImages = std::map<std::string, Image2<std::uint8_t>>;
-
-/// What is wrong with the images of one frame; empty where nothing is.
-std::string image_fault(const FrameImages& images, int threshold, int bins, int beams) {
-  for (const char* kind : kinds) {
-    const Image2<std::uint8_t>& image = images.at(kind);
-    // A recipe may draw the range window a frame, so the number of native bins may differ.
-    if (image.columns() != beams || (bins > 0 && image.rows() != bins)) {
-      return fmt::format("{} is {} x {}, not {} x {}", kind, image.rows(), image.columns(), bins, beams);
-    }
+void set_image(FramePixels& pixels, const std::string& kind, int bits, std::span<const std::uint8_t> png,
+               const fs::path& name) {
+  if (kind == "raw" && bits == 16) {
+    pixels.raw = decode_png<std::uint16_t>(png, name);
+    return;
   }
-  const auto clean = images.at("clean").pixels();
-  const auto mask = images.at("mask").pixels();
-  if (clean.size() != mask.size()) return "mask and clean differ in size";
+  Image2<std::uint8_t> image = decode_png<std::uint8_t>(png, name);
+  if (kind == "raw")
+    pixels.raw = std::move(image);
+  else if (kind == "clean")
+    pixels.clean = std::move(image);
+  else if (kind == "mask")
+    pixels.mask = std::move(image);
+  else if (kind == "labels")
+    pixels.labels = std::move(image);
+  else
+    throw DataError(fmt::format("{}: not an image of a frame", name.string()));
+}
+
+/// What is wrong with the images of one frame; empty where nothing is. bins 0: a recipe may draw the range window a
+/// frame, so the number of native bins may differ.
+std::string image_fault(const FramePixels& pixels, int threshold, int bins, int beams) {
+  const auto size_fault = [&](const auto& image) {
+    const bool right = image.columns() == beams && image.rows() == (bins > 0 ? bins : pixels.clean.rows());
+    return right ? std::string()
+                 : fmt::format("{} x {} pixels, not {} x {}", image.rows(), image.columns(), bins, beams);
+  };
+  for (const std::string& fault : {std::visit(size_fault, pixels.raw), size_fault(pixels.clean),
+                                   size_fault(pixels.mask), size_fault(pixels.labels)}) {
+    if (!fault.empty()) return fault;
+  }
+  const auto clean = pixels.clean.pixels();
+  const auto mask = pixels.mask.pixels();
   for (std::size_t i = 0; i < clean.size(); ++i) {
     if (mask[i] != (clean[i] >= threshold ? 255 : 0)) return fmt::format("mask is not clean >= {}", threshold);
   }
@@ -56,6 +74,7 @@ class Verifier {
     try {
       manifest_ = json::parse(read_text(manifest));
       threshold_ = manifest_.at("mask").at("threshold");
+      bits_ = manifest_.at("sonar").at("receive").at("bits");
       beams_ = static_cast<int>(manifest_.at("sonar").at("beam_azimuth_rad").size());
       const json& sonar = manifest_.at("recipe").at("sonar");
       const bool varies = sonar.contains("range_max_m") && sonar["range_max_m"].is_object();
@@ -132,24 +151,28 @@ class Verifier {
     for (const std::string& hash : hashes) root.add(std::string_view(hash));
   }
 
-  void check_frame(const FrameImages& images, const std::string& what, const std::string& line, std::string& hash) {
-    const std::string wrong = image_fault(images, threshold_, bins_, beams_);
+  void check_frame(const FramePixels& pixels, const std::string& what, const std::string& line, std::string& hash) {
+    const std::string wrong = image_fault(pixels, threshold_, bins_, beams_);
     if (!wrong.empty()) fault(fmt::format("{}: {}", what, wrong));
-    hash = content_hash(images.at("raw"), images.at("clean"), images.at("mask"), images.at("labels"), line);
+    hash = content_hash(pixels, line);
     const std::scoped_lock lock(mutex_);
     on_progress_(++report_.frames, total_);
   }
 
   void check_files(const std::string& split, std::size_t number, const std::string& line, std::string& hash) {
-    FrameImages images;
-    for (const char* kind : kinds) images[kind] = read_png(folder_ / split / kind / fmt::format("{:06}.png", number));
-    check_frame(images, fmt::format("{} {:06}", split, number), line, hash);
+    FramePixels pixels;
+    for (const char* kind : kinds) {
+      const fs::path file = folder_ / split / kind / fmt::format("{:06}.png", number);
+      set_image(pixels, kind, bits_, read_file(file), file);
+    }
+    check_frame(pixels, fmt::format("{} {:06}", split, number), line, hash);
   }
 
   void check_tar(const std::string& split, int shard, std::size_t first, std::size_t last,
                  const std::vector<std::string>& lines, std::vector<std::string>& hashes) {
     const fs::path path = folder_ / split / fmt::format("{}-{:06}.tar", split, shard);
-    FrameImages images;
+    FramePixels pixels;
+    std::size_t images = 0;
     std::size_t number = first;
     read_tar(path, [&](const std::string& member, const std::vector<std::uint8_t>& bytes) {
       if (number >= last) throw DataError(fmt::format("{}: more frames than the manifest says", path.string()));
@@ -157,12 +180,14 @@ class Verifier {
       if (!member.starts_with(stem)) throw DataError(fmt::format("{}: unexpected member {}", path.string(), member));
       const std::string kind = member.substr(stem.size(), member.find('.', stem.size()) - stem.size());
       if (kind != "json") {
-        images[kind] = decode_png(bytes, path / member);
+        set_image(pixels, kind, bits_, bytes, path / member);
+        ++images;
         return;
       }
-      if (images.size() != kinds.size()) throw DataError(fmt::format("{}: {} lacks images", path.string(), member));
-      check_frame(images, fmt::format("{} {:06}", split, number), lines[number], hashes[number]);
-      images.clear();
+      if (images != kinds.size()) throw DataError(fmt::format("{}: {} lacks images", path.string(), member));
+      check_frame(pixels, fmt::format("{} {:06}", split, number), lines[number], hashes[number]);
+      pixels = {};
+      images = 0;
       ++number;
     });
     if (number != last) fault(fmt::format("{}: frames are missing", path.string()));
@@ -191,6 +216,7 @@ class Verifier {
   std::function<void(int, int)> on_progress_;
   json manifest_;
   int threshold_ = 0;
+  int bits_ = 8;
   int beams_ = 0;
   int bins_ = 0;
   int total_ = 0;

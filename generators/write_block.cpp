@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <nlohmann/json.hpp>
 
 #include "ensonify/core/error.hpp"
@@ -12,24 +13,32 @@
 #include "ensonify/output/png.hpp"
 #include "ensonify/output/sha256.hpp"
 #include "ensonify/output/tar_shard.hpp"
+#include "ensonify/sensor_models/receive_chain.hpp"
 
 namespace ensonify {
 namespace {
 
 using nlohmann::json;
 
-/// Every image of a frame under the name of its folder.
-std::vector<std::pair<std::string, const Image2<std::uint8_t>*>> images_of(const PingImages& images) {
-  return {{"raw", &images.raw.grey}, {"clean", &images.clean.grey}, {"mask", &images.mask}, {"labels", &images.labels}};
+FramePixels pixels_of(const Frame& frame) {
+  const PingImages& images = frame.images;
+  FramePixels pixels{images.raw.grey, images.clean.grey, images.mask, images.labels};
+  if (frame.sonar.receive.bits == 16) pixels.raw = quantise16(images.raw.level);
+  return pixels;
 }
 
-FrameRecord record_of(const FrameMaker& maker, const Frame& frame) {
-  FrameRecord record;
-  record.index = frame.pose.index;
-  record.line = metadata_line(maker, frame.pose, frame.sonar, frame.images.mask);
-  record.sha256 =
-      content_hash(frame.images.raw.grey, frame.images.clean.grey, frame.images.mask, frame.images.labels, record.line);
-  return record;
+/// Every image of a frame under the name of its folder, as PNG.
+std::vector<std::pair<std::string, std::vector<std::uint8_t>>> encode(const FramePixels& pixels) {
+  return {{"raw", std::visit([](const auto& raw) { return encode_png(raw); }, pixels.raw)},
+          {"clean", encode_png(pixels.clean)},
+          {"mask", encode_png(pixels.mask)},
+          {"labels", encode_png(pixels.labels)}};
+}
+
+FrameRecord record_of(const FrameMaker& maker, const Frame& frame, const FramePixels& pixels) {
+  std::string line = metadata_line(maker, frame.pose, frame.sonar, pixels.mask);
+  std::string hash = content_hash(pixels, line);
+  return {frame.pose.index, std::move(hash), std::move(line)};
 }
 
 void write_record(const DatasetPaths& paths, const Block& block, const std::vector<FrameRecord>& records) {
@@ -72,28 +81,30 @@ std::string metadata_line(const FrameMaker& maker, const FramePose& pose, const 
   return line.dump();
 }
 
-std::string content_hash(const Image2<std::uint8_t>& raw, const Image2<std::uint8_t>& clean,
-                         const Image2<std::uint8_t>& mask, const Image2<std::uint8_t>& labels,
-                         const std::string& line) {
+std::string content_hash(const FramePixels& pixels, const std::string& line) {
+  static_assert(std::endian::native == std::endian::little);
+  const auto bytes = [](const auto& image) {
+    const auto p = image.pixels();
+    return std::span(reinterpret_cast<const std::uint8_t*>(p.data()), p.size_bytes());
+  };
   return Sha256()
-      .add(raw.pixels())
-      .add(clean.pixels())
-      .add(mask.pixels())
-      .add(labels.pixels())
+      .add(std::visit(bytes, pixels.raw))
+      .add(bytes(pixels.clean))
+      .add(bytes(pixels.mask))
+      .add(bytes(pixels.labels))
       .add(std::string_view(line))
       .hex();
 }
 
 FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, int index) {
   const Frame frame = maker.make(index);
+  const FramePixels pixels = pixels_of(frame);
   const std::string& split = maker.recipe().splits[static_cast<std::size_t>(frame.pose.split)].name;
-  for (const auto& [kind, image] : images_of(frame.images)) {
-    write_file(paths.image(split, kind, frame.pose.number), encode_png(*image));
-  }
+  for (const auto& [kind, png] : encode(pixels)) write_file(paths.image(split, kind, frame.pose.number), png);
   if (maker.recipe().cell_truth) {
     write_exr(paths.image(split, "truth", frame.pose.number), truth_channels(frame.echo, frame.truth), truth_comment);
   }
-  return record_of(maker, frame);
+  return record_of(maker, frame, pixels);
 }
 
 bool write_block(const FrameMaker& maker, const DatasetPaths& paths, const Block& block, SampleFormat format,
@@ -105,10 +116,11 @@ bool write_block(const FrameMaker& maker, const DatasetPaths& paths, const Block
   for (int index = block.first; index < block.first + block.frames; ++index) {
     if (tar) {
       const Frame frame = maker.make(index);
-      for (const auto& [kind, image] : images_of(frame.images)) {
-        tar->add(fmt::format("{:06}.{}.png", frame.pose.number, kind), encode_png(*image));
+      const FramePixels pixels = pixels_of(frame);
+      for (const auto& [kind, png] : encode(pixels)) {
+        tar->add(fmt::format("{:06}.{}.png", frame.pose.number, kind), png);
       }
-      records.push_back(record_of(maker, frame));
+      records.push_back(record_of(maker, frame, pixels));
       const std::string& line = records.back().line;
       tar->add(fmt::format("{:06}.json", frame.pose.number),
                {reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});

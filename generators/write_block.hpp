@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "ensonify/generators/dataset_plan.hpp"
@@ -12,9 +13,16 @@ namespace ensonify {
 std::string metadata_line(const FrameMaker& maker, const FramePose& pose, const SonarModel& sonar,
                           const Image2<std::uint8_t>& mask);
 
-/// SHA-256 of what a frame says, whatever its files: pixels of raw, clean, mask, labels, and its metadata line.
-std::string content_hash(const Image2<std::uint8_t>& raw, const Image2<std::uint8_t>& clean,
-                         const Image2<std::uint8_t>& mask, const Image2<std::uint8_t>& labels, const std::string& line);
+/// The pixels of a frame as its files hold them; `raw` has 8 or 16 bits, as the instrument has.
+struct FramePixels {
+  std::variant<Image2<std::uint8_t>, Image2<std::uint16_t>> raw;
+  Image2<std::uint8_t> clean;
+  Image2<std::uint8_t> mask;
+  Image2<std::uint8_t> labels;
+};
+
+/// SHA-256 of what a frame says, whatever its files: its pixels (16 bits: low byte first) and its metadata line.
+std::string content_hash(const FramePixels& pixels, const std::string& line);
 
 struct FrameRecord {
   int index = 0;

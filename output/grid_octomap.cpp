@@ -122,12 +122,12 @@ void write_grid_octomap(const OccupancyGrid& grid, const std::filesystem::path& 
 
   Tree tree(grid.frame.resolution_m);
   if (levels.back().at(0, 0, 0) != unknown) fill(tree, tree.make_root(), levels, tree_depth, 0, 0, 0);
-  // Header and data apart: OctoMap's writer of both prints to standard error, whatever the user of the library wants.
+  // As OcTree::writeBinary writes it; the library's own function prints to standard error.
   std::ostringstream bytes;
   bytes
       << "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
       << "id " << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << tree.getResolution() << "\ndata\n";
-  tree.writeBinaryData(bytes);
+  if (tree.size() > 0) tree.writeBinaryData(bytes);
   write_file(path, bytes.view());
 }
 

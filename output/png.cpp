@@ -81,7 +81,8 @@ std::vector<std::uint8_t> encode_png(const Image2<std::uint16_t>& image) {
   return encode(scanlines, image.columns(), image.rows(), 16);
 }
 
-Image2<std::uint8_t> decode_png(std::span<const std::uint8_t> bytes, const std::filesystem::path& name) {
+template <typename Grey>
+Image2<Grey> decode_png(std::span<const std::uint8_t> bytes, const std::filesystem::path& name) {
   constexpr std::size_t header_bytes = 33;
   if (bytes.size() < header_bytes || !std::equal(signature.begin(), signature.end(), bytes.begin())) {
     throw DataError(fmt::format("{}: no PNG file", name.string()));
@@ -101,15 +102,20 @@ Image2<std::uint8_t> decode_png(std::span<const std::uint8_t> bytes, const std::
     throw DataError(fmt::format("{}: broken PNG file: {}", name.string(), e.what()));
   }
   if (decoded.empty()) throw DataError(fmt::format("{}: broken PNG file", name.string()));
-  if (decoded.type() != CV_8UC1) {
-    throw DataError(fmt::format("{}: must be a greyscale PNG of 8 bits, not {} channels of {} bytes", name.string(),
-                                decoded.channels(), decoded.elemSize1()));
+  if (decoded.channels() != 1 || decoded.elemSize() != sizeof(Grey)) {
+    throw DataError(fmt::format("{}: must be a greyscale PNG of {} bits, not {} channels of {} bits", name.string(),
+                                8 * sizeof(Grey), decoded.channels(), 8 * decoded.elemSize1()));
   }
-  Image2<std::uint8_t> image(decoded.rows, decoded.cols);
-  for (int r = 0; r < decoded.rows; ++r) std::memcpy(image.row(r).data(), decoded.ptr(r), image.row(r).size());
+  Image2<Grey> image(decoded.rows, decoded.cols);
+  for (int r = 0; r < decoded.rows; ++r) std::memcpy(image.row(r).data(), decoded.ptr(r), image.row(r).size_bytes());
   return image;
 }
 
-Image2<std::uint8_t> read_png(const std::filesystem::path& path) { return decode_png(read_file(path), path); }
+template Image2<std::uint8_t> decode_png(std::span<const std::uint8_t>, const std::filesystem::path&);
+template Image2<std::uint16_t> decode_png(std::span<const std::uint8_t>, const std::filesystem::path&);
+
+Image2<std::uint8_t> read_png(const std::filesystem::path& path) {
+  return decode_png<std::uint8_t>(read_file(path), path);
+}
 
 }  // namespace ensonify

@@ -14,9 +14,15 @@ namespace ensonify {
 std::vector<std::uint8_t> encode_png(const Image2<std::uint8_t>& image);
 std::vector<std::uint8_t> encode_png(const Image2<std::uint16_t>& image);
 
-/// Decodes a greyscale PNG. Throws DataError naming `name` where the bytes are broken, larger than 2^28 pixels, or of
-/// another depth.
-Image2<std::uint8_t> decode_png(std::span<const std::uint8_t> bytes, const std::filesystem::path& name);
+/// Decodes a greyscale PNG; Grey is std::uint8_t or std::uint16_t. Throws DataError naming `name` where the bytes are
+/// broken, larger than 2^28 pixels, or of another depth.
+template <typename Grey>
+Image2<Grey> decode_png(std::span<const std::uint8_t> bytes, const std::filesystem::path& name);
+
+extern template Image2<std::uint8_t> decode_png(std::span<const std::uint8_t>, const std::filesystem::path&);
+extern template Image2<std::uint16_t> decode_png(std::span<const std::uint8_t>, const std::filesystem::path&);
+
+/// An 8-bit greyscale file.
 Image2<std::uint8_t> read_png(const std::filesystem::path& path);
 
 }  // namespace ensonify

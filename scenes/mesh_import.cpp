@@ -1,5 +1,6 @@
 #include "ensonify/scenes/mesh_import.hpp"
 
+#include <assimp/commonMetaData.h>
 #include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
@@ -9,6 +10,7 @@
 #include <algorithm>
 #include <assimp/Importer.hpp>
 #include <cmath>
+#include <string_view>
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/scenes/mesh_files.hpp"
@@ -36,6 +38,15 @@ Eigen::Matrix3d z_up_from(UpAxis up) {
   return m;
 }
 
+/// MeshLab writes `Y_UP` into every COLLADA file, whatever its coordinates mean; robot models that passed through it
+/// are nearly always drawn with z up.
+bool up_axis_is_hollow(const aiScene& scene, MeshFormat format) {
+  aiString tool;
+  return format == MeshFormat::collada && scene.mMetaData != nullptr &&
+         scene.mMetaData->Get(AI_METADATA_SOURCE_GENERATOR, tool) &&
+         std::string_view(tool.C_Str()).find("MeshLab") != std::string_view::npos;
+}
+
 /// What assimp hands over: COLLADA comes in metres with y up (unless told to leave the axis alone), glTF as it is by
 /// its definition, the others without unit or axis.
 Eigen::Matrix3d metres_z_up(const aiScene& scene, MeshFormat format, const MeshImportOptions& options) {
@@ -44,7 +55,8 @@ Eigen::Matrix3d metres_z_up(const aiScene& scene, MeshFormat format, const MeshI
     const double file_unit_m = std::cbrt(std::abs(eigen(scene.mRootNode->mTransformation).determinant()));
     if (file_unit_m > 0) unit_m /= file_unit_m;
   }
-  const bool y_up_by_format = format == MeshFormat::collada || format == MeshFormat::gltf;
+  const bool y_up_by_format =
+      (format == MeshFormat::collada && !up_axis_is_hollow(scene, format)) || format == MeshFormat::gltf;
   return options.scale * unit_m * z_up_from(options.up_axis.value_or(y_up_by_format ? UpAxis::y : UpAxis::z));
 }
 
@@ -149,6 +161,10 @@ TriangleMesh import_mesh(const fs::path& path, const MeshImportOptions& options,
     throw DataError(fmt::format("{}: can not be read as {}: {}", file, format_name(format), importer.GetErrorString()));
   }
 
+  if (!options.up_axis && up_axis_is_hollow(*scene, format)) {
+    warnings.push_back(fmt::format(
+        "{}: MeshLab marks every COLLADA file Y_UP; z is taken as up, give `up_axis: y` if it lies on its side", file));
+  }
   const Welded welded = weld(flatten(*scene, metres_z_up(*scene, format, options), file));
   if (welded.mesh.triangles.empty()) throw DataError(fmt::format("{}: holds no triangle of any area", file));
   if (welded.dropped > 0) {

@@ -14,6 +14,57 @@ constexpr float infinity = std::numeric_limits<float>::infinity();
 /// Footprints across azimuth are cut where the surface is met at less than about 7 degrees.
 constexpr float steepest_azimuth_slope = 8.0f;
 
+// By value: std::min and std::max return references, which keep loops from becoming vector code.
+constexpr float least(float a, float b) { return a < b ? a : b; }
+constexpr float most(float a, float b) { return a > b ? a : b; }
+
+// The two loops below become vector code, because their arrays are parameters that are said not to overlap.
+
+/// What each ray's surface sends back (see `shade_column`).
+void scatter(int count, const float* __restrict slant, const float* __restrict inverse_norm,
+             const float* __restrict range, const int* __restrict material, const float* __restrict gain,
+             float column_gain, const float* __restrict table, float* __restrict cos_incidence,
+             float* __restrict energy) {
+  for (int i = 0; i < count; ++i) {
+    const float cosine = least(std::abs(slant[i]) * inverse_norm[i], 1.0f);
+    const float place = std::sqrt(1.0f - cosine) * static_cast<float>(RayScene::scatter_steps);
+    const int step = static_cast<int>(place);
+    const int entry = material[i] * RayScene::scatter_stride + step;
+    const float sent = table[entry] + (place - static_cast<float>(step)) * (table[entry + 1] - table[entry]);
+    cos_incidence[i] = cosine;
+    energy[i] = sent * gain[i] * (range[i] < infinity ? column_gain : 0.0f);
+  }
+}
+
+/// Ranges that each ray's footprint covers. On the tangent plane n . (r d) is constant, so r at a border is
+/// r n.d / n.d_border; a plane that the border misses gives a negative or infinite r, taken as infinity.
+void spread_footprints(int count, const float* __restrict range, const float* __restrict slant,
+                       const float* __restrict ahead, const float* __restrict up, const float* __restrict left,
+                       const float* __restrict cosine, const float* __restrict edge_cosine,
+                       const float* __restrict edge_sine, float width_rad, float* __restrict near_m,
+                       float* __restrict far_m) {
+  for (int i = 0; i < count; ++i) {
+    const float r = range[i];
+    const float below = range[i - 1];
+    const float above = range[i + 1];
+    const float at_lower = r * (slant[i] / (ahead[i] * edge_cosine[i] + up[i] * edge_sine[i]));
+    const float at_upper = r * (slant[i] / (ahead[i] * edge_cosine[i + 1] + up[i] * edge_sine[i + 1]));
+    float lower = at_lower > 0.0f ? at_lower : infinity;
+    float upper = at_upper > 0.0f ? at_upper : infinity;
+    lower = least(most(lower, least(r, below)), most(r, below));
+    upper = least(most(upper, least(r, above)), most(r, above));
+    lower = lower < infinity ? lower : r;
+    upper = upper < infinity ? upper : r;
+    const float slope = std::abs(left[i]) / most(std::abs(slant[i]), 1e-20f);
+    const float across = r * cosine[i] * width_rad * least(slope * cosine[i], steepest_azimuth_slope);
+    const float along = upper - lower;
+    const float half = 0.5f * std::sqrt(along * along + across * across);
+    const float middle = 0.5f * (lower + upper);
+    near_m[i] = middle - half;
+    far_m[i] = middle + half;
+  }
+}
+
 }  // namespace
 
 RayColumn::RayColumn(int count)
@@ -24,6 +75,8 @@ RayColumn::RayColumn(int count)
       normal_left(static_cast<std::size_t>(count)),
       inverse_norm(static_cast<std::size_t>(count)),
       surface(static_cast<std::size_t>(count)),
+      material(static_cast<std::size_t>(count)),
+      slant(static_cast<std::size_t>(count)),
       energy(static_cast<std::size_t>(count)),
       cos_incidence(static_cast<std::size_t>(count)),
       near_m(static_cast<std::size_t>(count)),
@@ -34,6 +87,7 @@ void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::
   const Eigen::Vector3f ahead = column.cosine * axes.forward + column.sine * axes.left;
   const Eigen::Vector3f aside = column.cosine * axes.left - column.sine * axes.forward;
   const Eigen::Vector3f& up = axes.up;
+  const RayScene::Surface* surfaces = scene.surfaces().data();
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
@@ -63,7 +117,7 @@ void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::
 
     for (int l = 0; l < packet; ++l) {
       if (hit.hit.instID[0][l] == RTC_INVALID_GEOMETRY_ID) continue;
-      const RayScene::Surface& surface = scene.surfaces()[hit.hit.instID[0][l]];
+      const RayScene::Surface& surface = surfaces[hit.hit.instID[0][l]];
       const Eigen::Vector3f n =
           surface.normal_to_world * Eigen::Vector3f(hit.hit.Ng_x[l], hit.hit.Ng_y[l], hit.hit.Ng_z[l]);
       hit.hit.Ng_x[l] = n.x();
@@ -77,8 +131,10 @@ void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::
       const float ny = hit.hit.Ng_y[l];
       const float nz = hit.hit.Ng_z[l];
       const int i = first + l;
+      const int surface = met ? static_cast<int>(hit.hit.geomID[l]) : 0;
+      rays.surface[i] = surface;
+      rays.material[i] = surfaces[surface].material;
       rays.range_m[i + 1] = met ? hit.ray.tfar[l] : infinity;
-      rays.surface[i] = met ? static_cast<int>(hit.hit.geomID[l]) : 0;
       rays.normal_forward[i] = met ? nx * ahead.x() + ny * ahead.y() + nz * ahead.z() : 1.0f;
       rays.normal_up[i] = met ? nx * up.x() + ny * up.y() + nz * up.z() : 0.0f;
       rays.normal_left[i] = met ? nx * aside.x() + ny * aside.y() + nz * aside.z() : 0.0f;
@@ -88,42 +144,15 @@ void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::
 }
 
 void shade_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::Column& column, RayColumn& rays) {
-  const float* table = scene.scatter_table().data();
-  const RayScene::Surface* surfaces = scene.surfaces().data();
-  const float column_gain = column.gain * column.width_rad;
   for (int i = 0; i < rays.rays; ++i) {
-    const float slant = rays.normal_forward[i] * rows.cosine[i] + rays.normal_up[i] * rows.sine[i];
-    const float cosine = std::min(std::abs(slant) * rays.inverse_norm[i], 1.0f);
-    const float place = std::sqrt(1.0f - cosine) * static_cast<float>(RayScene::scatter_steps);
-    const int step = static_cast<int>(place);
-    const float* entry = table + (surfaces[rays.surface[i]].material * RayScene::scatter_stride + step);
-    const float scatter = entry[0] + (place - static_cast<float>(step)) * (entry[1] - entry[0]);
-    rays.cos_incidence[i] = cosine;
-    rays.energy[i] = rays.range_m[i + 1] < infinity ? scatter * rows.gain[i] * column_gain : 0.0f;
+    rays.slant[i] = rays.normal_forward[i] * rows.cosine[i] + rays.normal_up[i] * rows.sine[i];
   }
-  for (int i = 0; i < rays.rays; ++i) {
-    // On the tangent plane n . (r d) is constant, so r at a border is r n.d / n.d_border.
-    const float r = rays.range_m[i + 1];
-    const float slant = rays.normal_forward[i] * rows.cosine[i] + rays.normal_up[i] * rows.sine[i];
-    const float lower = rays.normal_forward[i] * rows.edge_cosine[i] + rays.normal_up[i] * rows.edge_sine[i];
-    const float upper = rays.normal_forward[i] * rows.edge_cosine[i + 1] + rays.normal_up[i] * rows.edge_sine[i + 1];
-    const float below = rays.range_m[i];
-    const float above = rays.range_m[i + 2];
-    float r_lower = slant * lower > 0.0f ? r * (slant / lower) : infinity;
-    float r_upper = slant * upper > 0.0f ? r * (slant / upper) : infinity;
-    r_lower = std::min(std::max(r_lower, std::min(r, below)), std::max(r, below));
-    r_upper = std::min(std::max(r_upper, std::min(r, above)), std::max(r, above));
-    r_lower = r_lower < infinity ? r_lower : r;
-    r_upper = r_upper < infinity ? r_upper : r;
-    const float arc = r * rows.cosine[i] * column.width_rad;
-    const float slope = std::abs(rays.normal_left[i]) / std::max(std::abs(slant), 1e-20f);
-    const float across = arc * std::min(slope * rows.cosine[i], steepest_azimuth_slope);
-    const float along = std::abs(r_upper - r_lower);
-    const float half = 0.5f * std::sqrt(along * along + across * across);
-    const float middle = 0.5f * (r_lower + r_upper);
-    rays.near_m[i] = middle - half;
-    rays.far_m[i] = middle + half;
-  }
+  const float* range_m = rays.range_m.data() + 1;
+  scatter(rays.rays, rays.slant.data(), rays.inverse_norm.data(), range_m, rays.material.data(), rows.gain.data(),
+          column.gain * column.width_rad, scene.scatter_table().data(), rays.cos_incidence.data(), rays.energy.data());
+  spread_footprints(rays.rays, range_m, rays.slant.data(), rays.normal_forward.data(), rays.normal_up.data(),
+                    rays.normal_left.data(), rows.cosine.data(), rows.edge_cosine.data(), rows.edge_sine.data(),
+                    column.width_rad, rays.near_m.data(), rays.far_m.data());
 }
 
 }  // namespace ensonify

@@ -21,7 +21,10 @@ struct RayColumn {
   std::vector<float> inverse_norm;    ///< 1 / |n|
   std::vector<int> surface;           ///< index into RayScene::surfaces, 0 for a miss
 
+  std::vector<int> material;  ///< of that surface
+
   // Shaded:
+  std::vector<float> slant;   ///< n . d, n not normalised
   std::vector<float> energy;  ///< without r^-2 and absorption; 0 for a miss
   std::vector<float> cos_incidence;
   std::vector<float> near_m, far_m;  ///< ranges that the ray's footprint covers

@@ -7,7 +7,7 @@ namespace ensonify {
 namespace {
 
 constexpr double least_two_way_db = -40.0;
-constexpr double bins_per_row = 2.0;
+constexpr double bins_per_row = 2.5;
 constexpr int packet = 8;
 constexpr int max_elevation_rays = 8192;
 /// Heights of the rays within a step, in steps; neighbouring columns far apart.

@@ -14,8 +14,8 @@ namespace ensonify {
 /// Four neighbouring columns place their rays at four different heights within a step, so that the edge of an object,
 /// seen through a beam's point spread, is sampled four times as finely as one column does.
 ///
-/// Density, where the instrument does not set it: columns at most half a beam width apart, rows at most two range bins
-/// of arc apart at the far end of the window, in multiples of 8.
+/// Density, where the instrument does not set it: columns at most half a beam width apart, rows at most two and a
+/// half range bins of arc apart at the far end of the window, in multiples of 8.
 struct RayFan {
   /// Elevations of one column.
   struct Rows {

@@ -228,8 +228,9 @@ TEST(MeshImport, ReadsRealRobots) {
   const fs::path folder =
       (shared != nullptr ? fs::path(shared) : fs::path(source != nullptr ? source : ".") / ".." / "shared") / "meshes";
   if (!fs::is_directory(folder)) GTEST_SKIP() << folder << " is absent; set ENSONIFY_SHARED";
-  // The glider's file says Y_UP and no unit: nose up, and 3.1 m long as drawn.
-  const RealMesh meshes[] = {{"slocum_glider.dae", {-1.186, -0.436, -1.616}, {1.186, 0.220, 1.500}, 1570},
+  // The glider went through MeshLab, which marks every file Y_UP; its wings span x, its hull lies along y and its tail
+  // fin stands along z, 3.1 m long as drawn.
+  const RealMesh meshes[] = {{"slocum_glider.dae", {-1.186, -1.616, -0.220}, {1.186, 1.500, 0.436}, 1570},
                              {"workhorse_navigator.dae", {-0.1126, -0.1126, -0.1222}, {0.1126, 0.1126, 0.1222}, 3088},
                              {"rexrov.stl", {-1.314, -0.756, -0.797}, {1.297, 0.756, 0.801}, 288}};
   for (const RealMesh& real : meshes) {
@@ -238,7 +239,8 @@ TEST(MeshImport, ReadsRealRobots) {
     EXPECT_LT((imported.box_m.max() - real.high_m).norm(), 2e-3) << real.file;
     EXPECT_EQ(imported.mesh.triangles.size(), real.triangles) << real.file;
     EXPECT_GT(enclosed_volume_m3(imported.mesh), 0) << real.file;
-    EXPECT_TRUE(imported.warnings.empty()) << imported.warnings[0];
+    const bool meshlab = real.file == std::string("slocum_glider.dae");
+    EXPECT_EQ(imported.warnings.size(), meshlab ? 1u : 0u) << real.file;
   }
 }
 

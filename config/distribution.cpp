@@ -10,7 +10,9 @@ struct Sampler {
   RandomSequence& random;
   double operator()(const Constant& d) const { return d.value; }
   double operator()(const Uniform& d) const { return random.uniform(d.low, d.high); }
-  double operator()(const LogUniform& d) const { return std::exp(random.uniform(std::log(d.low), std::log(d.high))); }
+  double operator()(const LogUniform& d) const {
+    return std::clamp(std::exp(random.uniform(std::log(d.low), std::log(d.high))), d.low, d.high);
+  }
   double operator()(const Normal& d) const { return d.mean + d.sigma * std::clamp(random.normal(), -3.0, 3.0); }
   double operator()(const Choice& d) const {
     return d.values[static_cast<std::size_t>(random.below(static_cast<int>(d.values.size())))];

@@ -246,9 +246,11 @@ void Reader::finish() const {
 }
 
 std::string Reader::where(std::string_view key) const {
-  int line = node_.Mark().line;
-  for (const auto& entry : node_.IsMap() ? node_ : YAML::Node(YAML::NodeType::Map)) {
-    if (entry.first.IsScalar() && entry.first.Scalar() == key) line = entry.first.Mark().line;
+  int line = std::max(node_.Mark().line, 0);
+  if (node_.IsMap()) {  // else the error is that it is none
+    for (const auto& entry : node_) {
+      if (entry.first.IsScalar() && entry.first.Scalar() == key) line = entry.first.Mark().line;
+    }
   }
   std::string place = fmt::format("{}:{}", source_->name, line + 1);
   if (!path_.empty() || !key.empty()) {

@@ -11,8 +11,8 @@ namespace ensonify {
 /// row). The same bits as one call a pixel, made eight blocks at a time.
 void fill_words(RandomKey key, std::uint32_t row, std::span<std::uint32_t> words);
 
-/// Uniform in (0, 1), 24 bits.
-inline float uniform_of(std::uint32_t word) { return (static_cast<float>(word >> 8) + 0.5f) * 0x1p-24f; }
+/// Uniform in (0, 1), 23 bits: with one more the last number would round to 1.
+inline float uniform_of(std::uint32_t word) { return (static_cast<float>(word >> 9) + 0.5f) * 0x1p-23f; }
 
 /// Standard normal by inversion: erfinv of M. Giles (2010, single precision), relative error about 1e-6.
 float normal_of(float uniform);

@@ -113,6 +113,10 @@ RayScene::RayScene(const Scene& scene, const std::string& isa)
     surfaces_.resize(std::max<std::size_t>(surfaces_.size(), id + 1));
     surfaces_[id] = surface;
   }
+  if (surfaces_.empty()) {  // misses look up surface 0, also where there is none
+    surfaces_.emplace_back();
+    if (scatter_table_.empty()) scatter_table_.resize(scatter_stride, 0.0f);
+  }
   rtcCommitScene(scene_.get());
   if (const RTCError error = rtcGetDeviceError(device_.get()); error != RTC_ERROR_NONE) {
     throw DataError(fmt::format("scene {}: Embree could not build it (error {})", scene.name, static_cast<int>(error)));

@@ -27,6 +27,33 @@ inline TriangleMesh open_box_mesh(const Eigen::Vector3f& low, const Eigen::Vecto
   return mesh;
 }
 
+/// Parallelogram about `centre` with half edges u and v; two triangles, the normal along u x v.
+inline TriangleMesh plate_mesh(const Vec3& centre, const Vec3& half_u, const Vec3& half_v) {
+  TriangleMesh mesh;
+  for (const Vec3& p : {Vec3(centre - half_u - half_v), Vec3(centre + half_u - half_v), Vec3(centre + half_u + half_v),
+                        Vec3(centre - half_u + half_v)}) {
+    mesh.vertices_m.push_back(p.cast<float>());
+  }
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}};
+  return mesh;
+}
+
+/// Horizontal plane at height z, facing up, reaching `reach_m` in every direction.
+inline TriangleMesh floor_mesh(double z_m, double reach_m = 100.0) {
+  return plate_mesh({0, 0, z_m}, {reach_m, 0, 0}, {0, reach_m, 0});
+}
+
+/// Plane through `point` with normal `n` (horizontal or not), reaching `reach_m`.
+inline TriangleMesh wall_mesh(const Vec3& point, const Vec3& n, double reach_m = 100.0) {
+  const Vec3 u = n.unitOrthogonal();
+  return plate_mesh(point, reach_m * u, reach_m * n.normalized().cross(u));
+}
+
+inline TriangleMesh moved(TriangleMesh mesh, const Vec3& by) {
+  for (Eigen::Vector3f& v : mesh.vertices_m) v += by.cast<float>();
+  return mesh;
+}
+
 /// Sphere by longitude and latitude around the origin, radius times radius_factor(longitude, latitude).
 /// 2 * around * (rings - 1) triangles.
 template <typename Factor>

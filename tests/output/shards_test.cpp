@@ -1,0 +1,169 @@
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <stdexcept>
+
+#include "ensonify/core/error.hpp"
+#include "ensonify/output/atomic_file.hpp"
+#include "ensonify/output/fan_view.hpp"
+#include "ensonify/output/sha256.hpp"
+#include "ensonify/output/tar_shard.hpp"
+#include "ensonify/output/trajectory_file.hpp"
+
+namespace ensonify {
+namespace {
+
+namespace fs = std::filesystem;
+using Bytes = std::vector<std::uint8_t>;
+
+class Files : public testing::Test {
+ protected:
+  fs::path folder = fs::temp_directory_path() / ("ensonify_shards_" + std::to_string(::getpid()));
+  void SetUp() override { fs::create_directories(folder); }
+  void TearDown() override { fs::remove_all(folder); }
+  std::size_t entries() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+  }
+};
+
+using Tar = Files;
+using Atomic = Files;
+using Tum = Files;
+
+void fill(const fs::path& path) {
+  TarShard shard(path);
+  shard.add("000000.raw.png", Bytes{1, 2, 3});
+  shard.add("000000.json", Bytes{});
+  shard.add("000001.raw.png", Bytes(100'000, 7));
+  shard.finish();
+}
+
+TEST_F(Tar, RoundTripInOrder) {
+  fill(folder / "a.tar");
+  std::vector<std::pair<std::string, Bytes>> members;
+  read_tar(folder / "a.tar", [&](const std::string& name, const Bytes& bytes) { members.emplace_back(name, bytes); });
+  ASSERT_EQ(members.size(), 3u);
+  EXPECT_EQ(members[0], (std::pair<std::string, Bytes>{"000000.raw.png", {1, 2, 3}}));
+  EXPECT_TRUE(members[1].second.empty());
+  EXPECT_EQ(members[2].second, Bytes(100'000, 7));
+}
+
+TEST_F(Tar, SameSamplesSameBytes) {
+  fill(folder / "a.tar");
+  fs::last_write_time(folder / "a.tar", fs::last_write_time(folder / "a.tar") - std::chrono::hours(100));
+  fill(folder / "b.tar");
+  EXPECT_EQ(read_file(folder / "a.tar"), read_file(folder / "b.tar"));
+}
+
+TEST_F(Tar, UnfinishedLeavesNothing) {
+  {
+    TarShard shard(folder / "a.tar");
+    shard.add("x", Bytes{1});
+    EXPECT_FALSE(fs::exists(folder / "a.tar"));
+  }
+  EXPECT_EQ(entries(), 0u);
+}
+
+TEST_F(Tar, GarbageAndTruncation) {
+  const auto ignore = [](const std::string&, const Bytes&) {};
+  write_file(folder / "garbage.tar", std::string(5000, 'x'));
+  EXPECT_THROW(read_tar(folder / "garbage.tar", ignore), DataError);
+  EXPECT_THROW(read_tar(folder / "missing.tar", ignore), DataError);
+  fill(folder / "a.tar");
+  const auto whole = read_file(folder / "a.tar");
+  write_file(folder / "cut.tar", std::span(whole).first(50'000));
+  EXPECT_THROW(read_tar(folder / "cut.tar", ignore), DataError);
+}
+
+// FIPS 180-2, appendix B.
+TEST(Sha256, KnownAnswers) {
+  EXPECT_EQ(Sha256().hex(), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(Sha256().add("abc").hex(), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(Sha256().add("abcdbcdecdefdefgefghfghighijhi").add("jkijkljklmklmnlmnomnopnopq").hex(),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(Sha256().add(std::string(1'000'000, 'a')).hex(),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST_F(Atomic, OldOrNewNeverHalf) {
+  write_file(folder / "deep/er/a.txt", "old");
+  EXPECT_EQ(read_text(folder / "deep/er/a.txt"), "old");
+  EXPECT_THROW(write_atomically(folder / "deep/er/a.txt",
+                                [](const fs::path& temporary) {
+                                  write_file(temporary, std::string_view("half"));
+                                  throw std::runtime_error("power cut");
+                                }),
+               std::runtime_error);
+  EXPECT_EQ(read_text(folder / "deep/er/a.txt"), "old");
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder / "deep/er"), fs::directory_iterator()), 1);
+  EXPECT_THROW(read_text(folder / "deep/er/a.txt", 2), DataError);  // larger than allowed
+  EXPECT_THROW(read_text(folder / "none"), DataError);
+}
+
+// One line a pose: time tx ty tz qx qy qz qw. Yaw of 90 deg is (0, 0, sin 45, cos 45).
+TEST_F(Tum, Text) {
+  Pose pose = pose_from_xyz_rpy({1.5, -2.25, -3.0}, 0, 0, radians(90.0));
+  write_tum(folder / "a.txt", {{0.0, Pose::Identity()}, {0.5, pose}});
+  EXPECT_EQ(read_text(folder / "a.txt"),
+            "# timestamp tx ty tz qx qy qz qw (T_world_sonar, metres, ENU)\n"
+            "0.000000 0.000000 0.000000 0.000000 0.000000000 0.000000000 0.000000000 1.000000000\n"
+            "0.500000 1.500000 -2.250000 -3.000000 0.000000000 0.000000000 0.707106781 0.707106781\n");
+}
+
+// A point at range r and azimuth theta is drawn r cos(theta) above the lower edge and r sin(theta) left of the middle,
+// height / range_max pixels a metre.
+TEST(FanView, BrightCellLandsWhereItBelongs) {
+  SonarGeometry g;
+  g.range_min_m = 1.0;
+  g.range_max_m = 9.0;
+  g.range_bins = 160;
+  for (int b = 0; b < 121; ++b) g.beam_azimuth_rad.push_back(radians(60.0 - b));
+  const int height = 450;
+  const double pixels_per_m = height / 9.0;
+  for (const auto& [bin, beam] : {std::pair{100, 60}, std::pair{150, 10}, std::pair{60, 110}, std::pair{20, 60}}) {
+    Image2<std::uint8_t> image(160, 121);
+    image(bin, beam) = 255;
+    const auto fan = fan_view(image, g, height);
+    EXPECT_EQ(fan.rows(), height);
+    EXPECT_EQ(fan.columns(), 2 * static_cast<int>(std::ceil(height * std::sin(radians(60.0)))));
+    double u = 0, v = 0, sum = 0;
+    for (int row = 0; row < fan.rows(); ++row) {
+      for (int column = 0; column < fan.columns(); ++column) {
+        u += fan(row, column) * (column + 0.5);
+        v += fan(row, column) * (row + 0.5);
+        sum += fan(row, column);
+      }
+    }
+    ASSERT_GT(sum, 0.0);
+    const double r = 1.0 + 0.05 * (bin + 0.5);
+    const double theta = radians(60.0 - beam);
+    EXPECT_NEAR(u / sum, fan.columns() / 2.0 - r * std::sin(theta) * pixels_per_m, 1.0) << bin << " " << beam;
+    EXPECT_NEAR(v / sum, height - r * std::cos(theta) * pixels_per_m, 1.0) << bin << " " << beam;
+  }
+}
+
+TEST(FanView, BlackOutsideOfTheFan) {
+  SonarGeometry g;
+  g.range_min_m = 2.0;
+  g.range_max_m = 4.0;
+  g.range_bins = 50;
+  for (int b = 0; b < 61; ++b) g.beam_azimuth_rad.push_back(radians(30.0 - b));
+  const auto fan = fan_view(Image2<std::uint8_t>(50, 61, 200), g, 200);
+  for (int row = 0; row < fan.rows(); ++row) {
+    for (int column = 0; column < fan.columns(); ++column) {
+      const double x = (200 - row - 0.5) / 50.0;
+      const double y = (fan.columns() / 2.0 - column - 0.5) / 50.0;
+      const double r = std::hypot(x, y);
+      const double theta = degrees(std::abs(std::atan2(y, x)));
+      if (r < 1.95 || r > 4.05 || theta > 31.5) {
+        EXPECT_EQ(fan(row, column), 0) << row << " " << column;
+      }
+      if (r > 2.1 && r < 3.9 && theta < 28.5) {
+        EXPECT_EQ(fan(row, column), 200) << row << " " << column;
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace ensonify

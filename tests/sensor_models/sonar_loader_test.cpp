@@ -1,0 +1,137 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "ensonify/config/library.hpp"
+#include "ensonify/core/error.hpp"
+#include "ensonify/sensor_models/beam_table.hpp"
+#include "ensonify/sensor_models/sonar_model.hpp"
+
+namespace ensonify {
+namespace {
+
+namespace fs = std::filesystem;
+
+TEST(SonarLoader, BundledSonarsLoad) {
+  const auto names = library_names("sensor_models");
+  EXPECT_GE(names.size(), 3u);
+  for (const std::string& name : names) {
+    const SonarModel sonar = load_sonar(name);
+    EXPECT_EQ(sonar.name, name);
+    EXPECT_EQ(sonar.geometry.beams(), 512) << name;
+    EXPECT_EQ(sonar.geometry.range_bins, 512) << name;
+    for (int b = 1; b < sonar.geometry.beams(); ++b) {
+      ASSERT_LT(sonar.geometry.beam_azimuth_rad[b], sonar.geometry.beam_azimuth_rad[b - 1]);
+    }
+  }
+}
+
+// c / (2 B) = 1490 / (2 * 262e3) = 2.843 mm: native bins of 2.842 mm, floor((5 - 0.1) / 0.002842) = 1724 of them.
+TEST(SonarLoader, NativeBins) {
+  const SonarModel sonar = load_sonar("oculus_m1200d_hf", {.range_min_m = 0.1, .range_max_m = 5.0, .range_bins = 0});
+  EXPECT_EQ(sonar.geometry.range_bins, 1724);
+  EXPECT_NEAR(sonar.geometry.bin_size_m(), 0.002842, 1e-12);
+  EXPECT_NEAR(sonar.geometry.range_max_m, 0.1 + 1724 * 0.002842, 1e-9);
+  EXPECT_NEAR(1490.0 / (2.0 * sonar.bandwidth_hz), sonar.native_bin_m, 5e-6);
+}
+
+// Measured on a real Oculus at 2.1 MHz: 256 beams, +-30 deg, spacing 0.225 deg in the middle and 0.26 at the edge.
+TEST(BeamTable, UniformSineIsTheOculusLaw) {
+  const auto azimuth = uniform_sine_beams(256, radians(60.0));
+  EXPECT_NEAR(degrees(azimuth.front()), 30.0, 1e-9);
+  EXPECT_NEAR(degrees(azimuth.back()), -30.0, 1e-9);
+  EXPECT_NEAR(degrees(azimuth[127] - azimuth[128]), 0.225, 0.0005);
+  EXPECT_NEAR(degrees(azimuth[0] - azimuth[1]), 0.26, 0.002);
+  for (int b = 0; b < 256; ++b) {
+    EXPECT_NEAR(azimuth[b], std::asin(0.5 - b / 255.0), 1e-12);
+    EXPECT_NEAR(azimuth[b], -azimuth[255 - b], 1e-12);
+  }
+}
+
+// The header of a raw ping holds the bearings as 256 little-endian int16 in 0.01 deg, from byte 122 on.
+TEST(BeamTable, RealOculusHeader) {
+  const char* shared = std::getenv("ENSONIFY_SHARED");
+  const fs::path root =
+      shared != nullptr ? fs::path(shared) : fs::path(std::getenv("ENSONIFY_SOURCE_DIR")) / "../shared";
+  const fs::path file = root / "real/oculus_m1200d_2100khz/one_ping_8bit.raw";
+  if (!fs::is_regular_file(file)) GTEST_SKIP() << "no " << file << "; set ENSONIFY_SHARED";
+  std::ifstream in(file, std::ios::binary);
+  const std::string bytes{std::istreambuf_iterator<char>(in), {}};
+  const auto azimuth = uniform_sine_beams(256, radians(60.0));
+  ASSERT_GT(bytes.size(), 122u + 512u);
+  double worst = 0;
+  for (std::size_t b = 0; b < 256; ++b) {
+    const auto low = static_cast<unsigned char>(bytes[122 + 2 * b]);
+    const auto high = static_cast<signed char>(bytes[123 + 2 * b]);
+    const double bearing_deg = 0.01 * (256 * high + low);  // rising, starboard positive or negative: symmetric
+    worst = std::max(worst, std::abs(bearing_deg - degrees(azimuth[255 - b])));
+  }
+  std::printf("worst bearing: %.4f deg\n", worst);
+  EXPECT_LE(worst, 0.0101);
+}
+
+class BadSonar : public testing::Test {
+ protected:
+  fs::path folder = fs::temp_directory_path() / ("ensonify_bad_sonar_" + std::to_string(::getpid()));
+  void SetUp() override { fs::create_directories(folder); }
+  void TearDown() override { fs::remove_all(folder); }
+
+  /// The bundled HF sonar with one text replaced; the message it is refused with, empty where it loads.
+  std::string refusal(const std::string& from, const std::string& to, const RangeWindow& window = {}) {
+    std::ifstream in(library_folder("sensor_models") / "oculus_m1200d_hf.yaml");
+    std::string text{std::istreambuf_iterator<char>(in), {}};
+    const auto at = text.find(from);
+    if (at == std::string::npos) return "no such text in the sonar: " + from;
+    text.replace(at, from.size(), to);
+    std::ofstream(folder / "bad.yaml") << text;
+    try {
+      load_sonar((folder / "bad.yaml").string(), window);
+    } catch (const ConfigError& e) {
+      return e.what();
+    }
+    return {};
+  }
+};
+
+TEST_F(BadSonar, IsRefusedWithItsRule) {
+  using testing::HasSubstr;
+  EXPECT_EQ(refusal("gamma: 0.5", "gamma: 0.5"), "");
+  EXPECT_THAT(refusal("frequency_hz: 2.1e6", "frequency_hz: 2.1"), HasSubstr("frequency_hz: must lie in"));
+  EXPECT_THAT(refusal("bandwidth_hz", "bandwith_hz"), HasSubstr("did you mean 'bandwidth_hz'"));
+  EXPECT_THAT(refusal("count: 512", "count: 0"), HasSubstr("beams.count"));
+  EXPECT_THAT(refusal("count: 512", "count: 1e6"), HasSubstr("beams.count"));
+  EXPECT_THAT(refusal("azimuth_fov_deg: 60", "azimuth_fov_deg: 180"), HasSubstr("azimuth_fov_deg"));
+  EXPECT_THAT(refusal("uniform_sine", "uniform_sin"), HasSubstr("uniform_angle, uniform_sine, listed"));
+  EXPECT_THAT(refusal("azimuth_shading: hann", "azimuth_shading: han"), HasSubstr("azimuth_shading"));
+  EXPECT_THAT(refusal("azimuth_width_deg: 0.4", "azimuth_width_deg: 0"), HasSubstr("azimuth_width_deg"));
+  EXPECT_THAT(refusal("gamma: 0.5", "gamma: 0"), HasSubstr("receive.gamma"));
+  EXPECT_THAT(refusal("bits: 8", "bits: 12"), HasSubstr("8 or 16"));
+  EXPECT_THAT(refusal("native_bin_m: 0.002842", "native_bin_m: 0"), HasSubstr("native_bin_m"));
+  EXPECT_THAT(refusal("bits: 8", "bits: 8\n  extra: 1"), HasSubstr("extra: unknown key"));
+  EXPECT_THAT(refusal("gamma", "gamma", {{}, 50.0, {}}), HasSubstr("must lie within the instrument's"));
+  EXPECT_THAT(refusal("gamma", "gamma", {6.0, {}, {}}), HasSubstr("must lie within the instrument's"));
+  EXPECT_THAT(refusal("gamma", "gamma", {.range_min_m = 0.1, .range_max_m = 0.1001, .range_bins = 0}),
+              HasSubstr("bins"));
+}
+
+TEST_F(BadSonar, ListedBeams) {
+  using testing::HasSubstr;
+  const std::string table = "{spacing: uniform_sine, count: 512, azimuth_fov_deg: 60}";
+  EXPECT_EQ(refusal(table, "{spacing: listed, azimuth_deg: [20, 10, -15]}"), "");
+  const SonarModel sonar = load_sonar((folder / "bad.yaml").string());
+  EXPECT_NEAR(sonar.geometry.beam_azimuth_rad[2], radians(-15.0), 1e-12);
+  EXPECT_EQ(refusal(table, "{spacing: listed, azimuth_deg: [-15, 10, 20]}"), "");  // rising: turned round
+  EXPECT_NEAR(load_sonar((folder / "bad.yaml").string()).geometry.beam_azimuth_rad[0], radians(20.0), 1e-12);
+  EXPECT_THAT(refusal(table, "{spacing: listed, azimuth_deg: []}"), HasSubstr("at least one beam"));
+  EXPECT_THAT(refusal(table, "{spacing: listed, azimuth_deg: [1, 3, 2]}"), HasSubstr("strictly"));
+  EXPECT_THAT(refusal(table, "{spacing: listed, azimuth_deg: [1, 1]}"), HasSubstr("strictly"));
+  EXPECT_THAT(refusal(table, "{spacing: listed, azimuth_deg: [100]}"), HasSubstr("must lie in"));
+}
+
+}  // namespace
+}  // namespace ensonify

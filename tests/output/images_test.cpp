@@ -39,7 +39,7 @@ using Exr = Images;
 TEST_F(Png, EightBitRoundTrip) {
   for (const auto& [rows, columns] : {std::pair{1, 1}, std::pair{1, 7}, std::pair{512, 512}, std::pair{703, 3}}) {
     const auto image = noisy<std::uint8_t>(rows, columns);
-    EXPECT_EQ(decode_png(encode_png(image), "x"), image);
+    EXPECT_EQ(decode_png<std::uint8_t>(encode_png(image), "x"), image);
     const auto bytes = encode_png(image);
     const cv::Mat other = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);  // by another library
     ASSERT_EQ(other.type(), CV_8UC1);
@@ -58,15 +58,15 @@ TEST_F(Png, SixteenBitIsReadByOpenCv) {
   for (int r = 0; r < 37; ++r) {
     for (int c = 0; c < 53; ++c) ASSERT_EQ(other.at<std::uint16_t>(r, c), image(r, c));
   }
-  EXPECT_THROW(decode_png(encode_png(image), "x"), DataError);  // not 8 bits: no silent loss
+  EXPECT_THROW(decode_png<std::uint8_t>(encode_png(image), "x"), DataError);  // not 8 bits: no silent loss
 }
 
 TEST_F(Png, TruncatedOrGarbage) {
   const auto whole = encode_png(noisy<std::uint8_t>(40, 40));
   for (std::size_t keep = 0; keep < whole.size(); keep += 13) {
-    EXPECT_THROW(decode_png({whole.data(), keep}, "x"), DataError) << keep;
+    EXPECT_THROW(decode_png<std::uint8_t>({whole.data(), keep}, "x"), DataError) << keep;
   }
-  EXPECT_THROW(decode_png({whole.data(), whole.size() - 1}, "x"), DataError);
+  EXPECT_THROW(decode_png<std::uint8_t>({whole.data(), whole.size() - 1}, "x"), DataError);
   const std::vector<std::uint8_t> garbage(500, 0x5a);
   EXPECT_THROW(decode_png(garbage, "x"), DataError);
   std::vector<std::uint8_t> huge = whole;  // claims 2^31 x 2^31 pixels

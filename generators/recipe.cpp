@@ -68,7 +68,8 @@ Split read_split(const std::string& name, Reader split) {
   result.name = name;
   result.places = read_places(split);
   if (split.has("frames_per_place")) {
-    result.frames = split.integer("frames_per_place", 1, max_frames) * static_cast<int>(result.places.size());
+    const int places = static_cast<int>(result.places.size());
+    result.frames = split.integer("frames_per_place", 1, max_frames / places) * places;
   } else {
     result.frames = split.integer("frames", 1, max_frames);
   }

@@ -19,14 +19,14 @@ bool has_room(const OccupancyGrid& truth, const Vec3& p_world, double radius_m) 
   const auto low = frame.cell_of(p_world - Vec3::Constant(radius_m));
   const auto high = frame.cell_of(p_world + Vec3::Constant(radius_m));
   if (!frame.contains(low[0], low[1], low[2]) || !frame.contains(high[0], high[1], high[2])) return false;
+  constexpr double rounding_m = 1e-9;  // a point on the border of a cell touches it
   const Vec3 half = Vec3::Constant(0.5 * frame.resolution_m);
   for (int iz = low[2]; iz <= high[2]; ++iz) {
     for (int iy = low[1]; iy <= high[1]; ++iy) {
       for (int ix = low[0]; ix <= high[0]; ++ix) {
         if (truth.occupancy[frame.index(ix, iy, iz)] == static_cast<std::uint8_t>(Occupancy::free)) continue;
         const Vec3 beyond = ((p_world - frame.centre_m(ix, iy, iz)).cwiseAbs() - half).cwiseMax(0.0);
-        // A point on the border of a cell is in it, whatever rounding says.
-        if (beyond.norm() <= radius_m + 1e-9) return false;
+        if (beyond.norm() <= radius_m + rounding_m) return false;
       }
     }
   }

@@ -7,14 +7,8 @@
 namespace ensonify {
 namespace {
 
-/// Exponent of range in the energy that a Lambert plane sends back a metre of range, before r^-2 and absorption:
-/// cos i and d phi / d r fall as r^-1 and r^-2.
-constexpr float lambert_exponent = -3.0f;
-/// Keeps the density of a very long footprint positive.
-constexpr float steepest_slope = -1.8f;
-
-/// Calls give(bin, energy) for the range bins that a ray's footprint covers. Density falls linearly over it; what lies
-/// outside of the window is lost.
+/// Calls give(bin, energy) for the range bins that a ray's footprint covers. Density changes linearly over it; what
+/// lies outside of the window is lost.
 template <typename Give>
 inline void spread(const RayColumn& rays, int i, const RangeBins& bins, const Give& give) {
   const float near = bins.place_of(rays.near_m[i]);
@@ -29,8 +23,7 @@ inline void spread(const RayColumn& rays, int i, const RangeBins& bins, const Gi
     return;
   }
   const float inverse_width = 1.0f / (far - near);
-  const float slope =
-      std::max(lambert_exponent * (rays.far_m[i] - rays.near_m[i]) / rays.range_m[i + 1], steepest_slope);
+  const float slope = rays.slope[i];
   const auto share_below = [&](float x) {
     const float u = std::min((x - near) * inverse_width, 1.0f);
     return u + 0.5f * slope * (u * u - u);

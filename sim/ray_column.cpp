@@ -13,6 +13,11 @@ constexpr int packet = 8;
 constexpr float infinity = std::numeric_limits<float>::infinity();
 /// Footprints across azimuth are cut where the surface is met at less than about 7 degrees.
 constexpr float steepest_azimuth_slope = 8.0f;
+/// Exponent of range in the energy that a Lambert plane sends back a metre of range, before r^-2 and absorption:
+/// cos i and d phi / d r fall as r^-1 and r^-2.
+constexpr float lambert_exponent = -3.0f;
+/// Keeps the density of a very long footprint positive.
+constexpr float steepest_slope = 1.8f;
 
 // By value: std::min and std::max return references, which keep loops from becoming vector code.
 constexpr float least(float a, float b) { return a < b ? a : b; }
@@ -36,13 +41,14 @@ void scatter(int count, const float* __restrict slant, const float* __restrict i
   }
 }
 
-/// Ranges that each ray's footprint covers. On the tangent plane n . (r d) is constant, so r at a border is
-/// r n.d / n.d_border; a plane that the border misses gives a negative or infinite r, taken as infinity.
+/// Ranges that each ray's footprint covers, and how its energy falls over them. On the tangent plane n . (r d) is
+/// constant, so r at a border is r n.d / n.d_border; a plane that the border misses gives a negative or infinite r,
+/// taken as infinity.
 void spread_footprints(int count, const float* __restrict range, const float* __restrict slant,
                        const float* __restrict ahead, const float* __restrict up, const float* __restrict left,
                        const float* __restrict cosine, const float* __restrict edge_cosine,
-                       const float* __restrict edge_sine, float width_rad, float* __restrict near_m,
-                       float* __restrict far_m) {
+                       const float* __restrict edge_sine, const float* __restrict gain_slope, float width_rad,
+                       float* __restrict near_m, float* __restrict far_m, float* __restrict slope) {
   for (int i = 0; i < count; ++i) {
     const float r = range[i];
     const float below = range[i - 1];
@@ -55,13 +61,15 @@ void spread_footprints(int count, const float* __restrict range, const float* __
     upper = least(most(upper, least(r, above)), most(r, above));
     lower = lower < infinity ? lower : r;
     upper = upper < infinity ? upper : r;
-    const float slope = std::abs(left[i]) / most(std::abs(slant[i]), 1e-20f);
-    const float across = r * cosine[i] * width_rad * least(slope * cosine[i], steepest_azimuth_slope);
+    const float tilt = std::abs(left[i]) / most(std::abs(slant[i]), 1e-20f);
+    const float across = r * cosine[i] * width_rad * least(tilt * cosine[i], steepest_azimuth_slope);
     const float along = upper - lower;
     const float half = 0.5f * std::sqrt(along * along + across * across);
     const float middle = 0.5f * (lower + upper);
     near_m[i] = middle - half;
     far_m[i] = middle + half;
+    const float falling = lambert_exponent * (2.0f * half / r) + gain_slope[i] * (along / most(2.0f * half, 1e-20f));
+    slope[i] = least(most(falling, -steepest_slope), steepest_slope);
   }
 }
 
@@ -80,7 +88,8 @@ RayColumn::RayColumn(int count)
       energy(static_cast<std::size_t>(count)),
       cos_incidence(static_cast<std::size_t>(count)),
       near_m(static_cast<std::size_t>(count)),
-      far_m(static_cast<std::size_t>(count)) {}
+      far_m(static_cast<std::size_t>(count)),
+      slope(static_cast<std::size_t>(count)) {}
 
 void cast_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan::Column& column, const RayAxes& axes,
                  float reach_m, RayColumn& rays) {
@@ -152,7 +161,7 @@ void shade_column(const RayScene& scene, const RayFan::Rows& rows, const RayFan:
           column.gain * column.width_rad, scene.scatter_table().data(), rays.cos_incidence.data(), rays.energy.data());
   spread_footprints(rays.rays, range_m, rays.slant.data(), rays.normal_forward.data(), rays.normal_up.data(),
                     rays.normal_left.data(), rows.cosine.data(), rows.edge_cosine.data(), rows.edge_sine.data(),
-                    column.width_rad, rays.near_m.data(), rays.far_m.data());
+                    rows.gain_slope.data(), column.width_rad, rays.near_m.data(), rays.far_m.data(), rays.slope.data());
 }
 
 }  // namespace ensonify

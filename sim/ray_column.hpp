@@ -28,6 +28,7 @@ struct RayColumn {
   std::vector<float> energy;  ///< without r^-2 and absorption; 0 for a miss
   std::vector<float> cos_incidence;
   std::vector<float> near_m, far_m;  ///< ranges that the ray's footprint covers
+  std::vector<float> slope;          ///< change of the energy's density from near to far, over its mean
 };
 
 /// The axes of the sonar frame in the world, single precision.

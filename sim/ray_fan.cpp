@@ -6,8 +6,9 @@
 namespace ensonify {
 namespace {
 
-constexpr double least_two_way_db = -40.0;
-constexpr double bins_per_row = 2.5;
+/// Where the mask of a bright surface may still reach (gamma 0.5 brings 60 dB into 8 bits): no edge of the fan shows.
+constexpr double least_two_way_db = -60.0;
+constexpr double bins_per_row = 3.0;
 constexpr int packet = 8;
 constexpr int max_elevation_rays = 8192;
 /// Heights of the rays within a step, in steps; neighbouring columns far apart.
@@ -28,6 +29,12 @@ int choose_rays_per_beam(const SonarModel& sonar, const std::vector<double>& edg
   return std::clamp(static_cast<int>(std::ceil(widest / (0.5 * sonar.receive_azimuth.width_rad()) - 1e-9)), 1, 64);
 }
 
+/// Two-way pattern times the solid angle of a radian of elevation and azimuth.
+double two_way_gain(const Aperture& elevation, double phi) {
+  const double one_way = elevation.power(std::sin(phi));
+  return one_way * one_way * std::cos(phi);
+}
+
 RayFan::Rows make_rows(const SonarModel& sonar, int rays, double half_arc, double height) {
   RayFan::Rows rows;
   const double step = 2.0 * half_arc / rays;
@@ -40,11 +47,15 @@ RayFan::Rows make_rows(const SonarModel& sonar, int rays, double half_arc, doubl
   }
   for (int i = 0; i < rays; ++i) {
     const double phi = lowest + (i + 0.5) * step;
-    const double pattern = sonar.elevation.power(std::sin(phi));
     rows.elevation_rad.push_back(static_cast<float>(phi));
     rows.cosine.push_back(static_cast<float>(std::cos(phi)));
     rows.sine.push_back(static_cast<float>(std::sin(phi)));
-    rows.gain.push_back(static_cast<float>(pattern * pattern * std::cos(phi) * step));
+    // Simpson's rule: the flank of the main lobe falls by decibels within a step.
+    const double below = two_way_gain(sonar.elevation, phi - 0.5 * step);
+    const double above = two_way_gain(sonar.elevation, phi + 0.5 * step);
+    const double mean = (below + 4.0 * two_way_gain(sonar.elevation, phi) + above) / 6.0;
+    rows.gain.push_back(static_cast<float>(mean * step));
+    rows.gain_slope.push_back(static_cast<float>(mean > 0.0 ? (above - below) / mean : 0.0));
     if (std::abs(phi) <= half_fov) {
       rows.first_nominal = std::min(rows.first_nominal, i);
       rows.last_nominal = i + 1;

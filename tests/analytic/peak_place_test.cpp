@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <ostream>
 
 #include "support/meshes.hpp"
 #include "support/pings.hpp"
@@ -26,6 +27,10 @@ Eigen::Matrix3d rotation(double roll, double pitch, double yaw) {
 struct PlaceCase {
   double roll_deg, pitch_deg, yaw_deg;
 };
+
+void PrintTo(const PlaceCase& c, std::ostream* out) {
+  *out << "roll " << c.roll_deg << " pitch " << c.pitch_deg << " yaw " << c.yaw_deg;
+}
 
 class PeakPlace : public testing::TestWithParam<PlaceCase> {
  protected:

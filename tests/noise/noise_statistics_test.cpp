@@ -105,7 +105,8 @@ TEST(NoiseKeys, StagesDoNotShiftOneAnother) {
 TEST(NoiseChain, ClipsAndKeepsAnEmptyChain) {
   const Image2<float> grey(32, 32, 0.9F);
   EXPECT_EQ(disturb({"none", {}}, grey, key), grey);
-  for (const float v : disturb(speckle(2.0), grey, key).pixels()) {
+  const Image2<float> loud = disturb(speckle(2.0), grey, key);
+  for (const float v : loud.pixels()) {
     ASSERT_GE(v, 0.0F);
     ASSERT_LE(v, 1.0F);
   }

@@ -68,14 +68,14 @@ TEST_F(Png, TruncatedOrGarbage) {
   }
   EXPECT_THROW(decode_png<std::uint8_t>({whole.data(), whole.size() - 1}, "x"), DataError);
   const std::vector<std::uint8_t> garbage(500, 0x5a);
-  EXPECT_THROW(decode_png(garbage, "x"), DataError);
+  EXPECT_THROW(decode_png<std::uint8_t>(garbage, "x"), DataError);
   std::vector<std::uint8_t> huge = whole;  // claims 2^31 x 2^31 pixels
   for (const std::size_t at : {16u, 20u}) huge[at] = 0x7f;
-  EXPECT_THROW(decode_png(huge, "x"), DataError);
+  EXPECT_THROW(decode_png<std::uint8_t>(huge, "x"), DataError);
   cv::Mat colour(4, 4, CV_8UC3, cv::Scalar(1, 2, 3));
   std::vector<std::uint8_t> rgb;
   cv::imencode(".png", colour, rgb);
-  EXPECT_THROW(decode_png(rgb, "x"), DataError);
+  EXPECT_THROW(decode_png<std::uint8_t>(rgb, "x"), DataError);
   EXPECT_THROW(read_png(folder / "missing.png"), DataError);
 }
 
@@ -88,7 +88,7 @@ TEST_F(Png, FlippedBitIsNoticed) {
     auto broken = whole;
     broken[at] ^= 0x10;
     try {
-      unnoticed += decode_png(broken, "x") != image;
+      unnoticed += decode_png<std::uint8_t>(broken, "x") != image;
     } catch (const DataError&) {
     }
   }

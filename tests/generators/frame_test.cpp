@@ -1,0 +1,181 @@
+#include "ensonify/generators/frame.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "ensonify/core/error.hpp"
+
+namespace ensonify {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::HasSubstr;
+
+const std::string small_place = R"(
+bounds: {min: [-4, -4, -4], max: [4, 4, 0]}
+navigable: {min: [-3, -3, -3], max: [3, 3, -1]}
+grid_resolution_m: 0.1
+objects:
+  - {name: block, shape: box, length_m: 1, width_m: 1, height_m: 1, pose: [0, 0, -2], material: concrete}
+  - {name: wall, shape: box, length_m: 0.3, width_m: 7, height_m: 3.5, pose: [3.7, 0, -2], material: concrete}
+)";
+
+const std::string random_split = R"(  train:
+    frames: 6
+    places: [{scene: a.yaml}, {scene: b.yaml}]
+    random_poses: {pitch_deg: {uniform: [-5, 25]}, clearance_m: 0.3, least_seen_share: 0.02, tries: 2000}
+)";
+const std::string swum_split = R"(  test:
+    frames: 5
+    places: [{scene: way.yaml}]
+    trajectory: {speed_mps: 0.5, rate_hz: 2}
+)";
+const std::string head = R"(name: test
+sonar: {model: oculus_m1200d_hf, range_min_m: 0.1, range_max_m: {uniform: [4, 6]}, range_bins: 128, gain_db: {uniform: [-3, 3]}}
+noise: paper
+)";
+
+class Frames : public testing::Test {
+ protected:
+  fs::path folder = fs::temp_directory_path() / ("ensonify_frames_" + std::to_string(::getpid()));
+  void SetUp() override {
+    fs::create_directories(folder);
+    for (const char* name : {"a.yaml", "b.yaml"}) write(name, "title: place\n" + small_place);
+    write("way.yaml",
+          "title: way\n" + small_place + "waypoints:\n  - [-2, -2, -2, 0, 0, 0]\n  - [-2, 2, -2, 0, 0, 0]\n");
+    write("into.yaml",
+          "title: into\n" + small_place + "waypoints:\n  - [-2, 0, -2, 0, 0, 0]\n  - [2, 0, -2, 0, 0, 0]\n");
+  }
+  void TearDown() override { fs::remove_all(folder); }
+
+  void write(const std::string& name, const std::string& text) const { std::ofstream(folder / name) << text; }
+  Recipe recipe(const std::string& text) const {
+    write("recipe.yaml", text);
+    return load_recipe((folder / "recipe.yaml").string());
+  }
+  std::string refusal(const std::string& text) const {
+    try {
+      recipe(text);
+    } catch (const ConfigError& e) {
+      return e.what();
+    }
+    return {};
+  }
+};
+
+TEST_F(Frames, SameInAnyOrderAndAlone) {
+  const Recipe r = recipe(head + "splits:\n" + random_split + swum_split);
+  ASSERT_EQ(r.frames(), 11);
+  const FrameMaker forward(r, default_isa);
+  const FrameMaker backward(r, default_isa);
+  std::vector<Frame> frames;
+  for (int i = 0; i < r.frames(); ++i) frames.push_back(forward.make(i));
+  for (int i = r.frames() - 1; i >= 0; --i) {
+    const Frame other = backward.make(i);
+    EXPECT_EQ(other.images.raw.grey, frames[i].images.raw.grey) << i;
+    EXPECT_EQ(other.images.clean.grey, frames[i].images.clean.grey) << i;
+    EXPECT_EQ(other.pose.T_world_sonar.matrix(), frames[i].pose.T_world_sonar.matrix()) << i;
+    EXPECT_EQ(other.pose.T_world_sonar_est.matrix(), frames[i].pose.T_world_sonar_est.matrix()) << i;
+    EXPECT_EQ(other.pose.sampled, frames[i].pose.sampled) << i;
+  }
+  const FrameMaker alone(r, default_isa);
+  EXPECT_EQ(alone.make(7).images.raw.grey, frames[7].images.raw.grey);
+  EXPECT_NE(frames[0].images.raw.grey, frames[2].images.raw.grey);
+  // What distributions gave is recorded and kept.
+  for (const Frame& f : frames) {
+    const auto value = [&](const std::string& name) {
+      const auto at =
+          std::find_if(f.pose.sampled.begin(), f.pose.sampled.end(), [&](const auto& s) { return s.first == name; });
+      return at == f.pose.sampled.end() ? -1e9 : at->second;
+    };
+    EXPECT_EQ(value("sonar.range_max_m"), f.sonar.geometry.range_max_m);
+    EXPECT_GE(value("sonar.range_max_m"), 4.0);
+    EXPECT_LE(value("sonar.range_max_m"), 6.0);
+    EXPECT_LE(std::abs(value("sonar.gain_db")), 3.0);
+  }
+  // Random poses take the places in turn, have no time and no drift; trajectories run at 0.5 m/s and 2 Hz.
+  EXPECT_EQ(frames[0].pose.place, 0);
+  EXPECT_EQ(frames[1].pose.place, 1);
+  EXPECT_FALSE(frames[0].pose.time_s.has_value());
+  EXPECT_EQ(frames[0].pose.T_world_sonar.matrix(), frames[0].pose.T_world_sonar_est.matrix());
+  EXPECT_EQ(frames[8].pose.place, 2);
+  EXPECT_EQ(frames[8].pose.number, 2);
+  EXPECT_EQ(frames[8].pose.time_s, 1.0);
+  EXPECT_TRUE(frames[8].pose.T_world_sonar.translation().isApprox(Vec3(-2, -1.5, -2), 1e-9));
+  EXPECT_TRUE(frames[6].pose.T_world_sonar_est.isApprox(frames[6].pose.T_world_sonar, 1e-12));  // no drift at t = 0
+}
+
+TEST_F(Frames, TrajectoryIntoAnObjectIsAConfigErrorWithItsPlace) {
+  std::string text = head + "splits:\n" + swum_split;
+  text.replace(text.find("way.yaml"), 8, "into.yaml");
+  text.replace(text.find("frames: 5"), 9, "frames: 9");  // 0.25 m a frame from x = -2: the block begins at -0.5
+  const FrameMaker maker(recipe(text), default_isa);
+  EXPECT_NO_THROW(maker.pose(5));
+  try {
+    maker.pose(8);
+    FAIL();
+  } catch (const ConfigError& e) {
+    EXPECT_THAT(e.what(), HasSubstr("into"));
+    EXPECT_THAT(e.what(), HasSubstr("(0.00, 0.00, -2.00) m"));
+    EXPECT_THAT(e.what(), HasSubstr("4 s after its start"));
+  }
+}
+
+TEST_F(Frames, NoRoomIsADataErrorWithACure) {
+  std::string text = head + "splits:\n" + random_split;
+  text.replace(text.find("clearance_m: 0.3"), 16, "clearance_m: 4.0");
+  text.replace(text.find("tries: 2000"), 11, "tries: 5");
+  const FrameMaker maker(recipe(text), default_isa);
+  EXPECT_THROW(maker.pose(0), DataError);
+}
+
+using Recipes = Frames;
+
+TEST_F(Recipes, Refusals) {
+  EXPECT_EQ(refusal(head + "splits:\n" + random_split), "");
+  EXPECT_THAT(refusal(head), HasSubstr("needs the key 'splits'"));
+  EXPECT_THAT(refusal(head + "splits: {}\n"), HasSubstr("at least one of train, val, test"));
+  EXPECT_THAT(refusal(head + "splits:\n  training: {frames: 1}\n"), HasSubstr("training: unknown key; did you mean"));
+  EXPECT_THAT(refusal(head + "splits:\n" + random_split +
+                      "  val:\n    frames: 2\n    places: [{scene: a.yaml}]\n    random_poses: {}\n"),
+              HasSubstr("splits must not share a layout"));
+  EXPECT_THAT(refusal(head + "splits:\n  val:\n    frames: 2\n    places: []\n    random_poses: {}\n"),
+              HasSubstr("at least one scene"));
+  EXPECT_THAT(refusal(head + "splits:\n  val:\n    frames: 3\n    places: [{scene: a.yaml}, {scene: b.yaml}]\n    "
+                             "trajectory: {}\n"),
+              HasSubstr("multiple of the 2 places"));
+  EXPECT_THAT(refusal(head + "splits:\n  val:\n    frames: 2\n    places: [{scene: a.yaml}]\n"),
+              HasSubstr("random_poses"));
+  EXPECT_THAT(refusal(head + "splits:\n  val:\n    frames: 0\n    places: [{scene: a.yaml}]\n    random_poses: {}\n"),
+              HasSubstr("frames: must be a whole number"));
+  EXPECT_THAT(refusal(head + "splits:\n  val:\n    frames: 2\n    places: [{scene: a.yaml, layouts: [0.5]}]\n    "
+                             "random_poses: {}\n"),
+              HasSubstr("whole numbers"));
+  EXPECT_THAT(refusal(head + "mask: {threshold: 0}\nsplits:\n" + random_split), HasSubstr("mask.threshold"));
+}
+
+// 10^8 frames in each of 30 layouts is more than an int holds.
+TEST_F(Recipes, FramesPerPlaceDoNotOverflow) {
+  const std::string layouts =
+      "[0,1,2,3,4,5,6,7,8,9,10,11,12,13,14,15,16,17,18,19,20,21,22,23,24,25,26,27,28,29,30,31,32,33,34,35,36,37,38,39,"
+      "40,41,42]";
+  EXPECT_NE(refusal(head + "splits:\n  val:\n    frames_per_place: 100000000\n    places: [{scene: a.yaml, layouts: " +
+                    layouts + "}]\n    random_poses: {}\n"),
+            "");
+}
+
+TEST(Recipe, BundledLoad) {
+  const Recipe paper = load_recipe("paper");
+  EXPECT_EQ(paper.splits.size(), 3u);
+  EXPECT_EQ(paper.splits[0].frames, 3000);
+  EXPECT_EQ(paper.drift.radial_error_m, 1.1);
+  EXPECT_NO_THROW(load_recipe("quick"));
+}
+
+}  // namespace
+}  // namespace ensonify

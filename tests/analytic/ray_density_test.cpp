@@ -65,6 +65,16 @@ struct Worst {
   int compared = 0;
 };
 
+/// A block with less than a hundredth of a neighbour's energy is the fringe of an echo's front, not a surface.
+bool is_fringe(const Image2<double>& blocks, int i, int j) {
+  for (int k = std::max(i - 1, 0); k <= std::min(i + 1, blocks.rows() - 1); ++k) {
+    for (int l = std::max(j - 1, 0); l <= std::min(j + 1, blocks.columns() - 1); ++l) {
+      if (blocks(i, j) < 1e-2 * blocks(k, l)) return true;
+    }
+  }
+  return false;
+}
+
 Worst compare(const Scenery& s, const SonarModel& sonar, const Image2<float>& coarse, const Image2<float>& fine) {
   const Image2<double> a = blocks_of(coarse);
   const Image2<double> b = blocks_of(fine);
@@ -76,7 +86,8 @@ Worst compare(const Scenery& s, const SonarModel& sonar, const Image2<float>& co
       const double port = sonar.geometry.beam_azimuth_rad[block * j];
       const double starboard = sonar.geometry.beam_azimuth_rad[block * j + block - 1];
       // Blocks of next to no energy are left out: below 1e-4 of the largest.
-      if (b(i, j) < 1e-4 * largest || !s.smooth(range, port) || !s.smooth(range, starboard)) continue;
+      if (b(i, j) < 1e-4 * largest || is_fringe(b, i, j) || !s.smooth(range, port) || !s.smooth(range, starboard))
+        continue;
       ++worst.compared;
       const double error = std::abs(a(i, j) / b(i, j) - 1.0);
       if (error > worst.error) worst = {error, range, degrees(0.5 * (port + starboard)), worst.compared};

@@ -52,7 +52,11 @@ std::string plan_json(const FrameMaker& maker, const std::string& isa, SampleFor
   plan["isa"] = isa;
   plan["format"] = format == SampleFormat::folder ? "folder" : "webdataset";
   for (const PlaceRef& place : maker.places()) {
-    plan["scene_sha256"][place.scene] = Sha256().add(read_file(resolve_name("scenes", place.scene))).hex();
+    if (plan["scene_sha256"].contains(place.scene)) continue;
+    Sha256 hash;
+    hash.add(read_file(resolve_name("scenes", place.scene)));
+    for (const fs::path& mesh : load_scene(place.scene, place.layout).mesh_files) hash.add(read_file(mesh));
+    plan["scene_sha256"][place.scene] = hash.hex();
   }
   return plan.dump(1);
 }

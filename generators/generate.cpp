@@ -37,13 +37,15 @@ struct Failure {
   std::string reason;
 };
 
+std::filesystem::path failures_file(const DatasetPaths& paths) { return paths.state() / "failed.jsonl"; }
+
 void report_failures(const DatasetPaths& paths, std::vector<Failure> failures) {
   std::sort(failures.begin(), failures.end(), [](const Failure& a, const Failure& b) { return a.block < b.block; });
   std::string lines;
   for (const Failure& f : failures) {
     lines += nlohmann::json{{"block", f.block}, {"reason", f.reason}}.dump() + "\n";
   }
-  const auto file = paths.state() / "failed.jsonl";
+  const auto file = failures_file(paths);
   write_file(file, lines);
   throw DataError(fmt::format("{} blocks could not be made, listed in {}; the first: {}", failures.size(),
                               file.string(), failures.front().reason));
@@ -96,6 +98,7 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
     }
   });
   if (!failures.empty()) report_failures(paths, std::move(failures));
+  std::filesystem::remove(failures_file(paths), no_throw);  // of an earlier run
   if (stopped) return Outcome::stopped;
   if (!std::all_of(blocks.begin(), blocks.end(), [&](const Block& b) { return is_done(paths, b); })) {
     return Outcome::shard_done;

@@ -16,8 +16,8 @@ namespace ensonify {
 /// A mesh put into the world. Many instances may share one mesh.
 struct Instance {
   std::string name;
-  int mesh = 0;      ///< index into Scene::meshes
-  int material = 0;  ///< index into Scene::materials
+  int mesh = 0;                                                  ///< index into Scene::meshes
+  int material = 0;                                              ///< index into Scene::materials
   Eigen::Affine3d T_world_object = Eigen::Affine3d::Identity();  ///< rotation, translation, scale
   bool obstacle = true;  ///< false: echoes, but is no occupied space (the water surface)
 };
@@ -34,8 +34,9 @@ struct Scene {
   Eigen::AlignedBox3d bounds_m;     ///< the part of the world that the occupancy truth covers; top at most z = 0
   Eigen::AlignedBox3d navigable_m;  ///< where a vehicle may be; inside bounds_m
   double grid_resolution_m = 0.1;
-  std::vector<Pose> waypoints;  ///< the place's default trajectory, T_world_sonar; may be empty
-  std::vector<std::string> warnings;  ///< what loading found odd, e.g. a mesh that looks like millimetres
+  std::vector<Pose> waypoints;                    ///< the place's default trajectory, T_world_sonar; may be empty
+  std::vector<std::filesystem::path> mesh_files;  ///< that it was read from
+  std::vector<std::string> warnings;              ///< what loading found odd, e.g. a mesh that looks like millimetres
 };
 
 /// Loads a scene YAML (path or bundled name) in the layout given. Same file and layout: same bits.

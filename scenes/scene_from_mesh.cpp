@@ -13,6 +13,7 @@ Scene scene_from_mesh(const std::filesystem::path& mesh) {
   scene.name = mesh.stem().string();
   scene.title = mesh.filename().string();
   scene.meshes.push_back(import_mesh(mesh, {}, scene.warnings));
+  scene.mesh_files.push_back(mesh);
   for (const Material& material : bundled_materials()) {
     if (material.name == "steel_rusty") scene.materials.push_back(material);
   }

@@ -57,6 +57,7 @@ int import_once(SceneDraft& draft, Reader& reader) {
   if (const auto known = draft.imported.find(cache_key); known != draft.imported.end()) return known->second;
   const int index = add_mesh(draft, reader, import_mesh(path, options, draft.scene.warnings));
   draft.imported[cache_key] = index;
+  draft.scene.mesh_files.push_back(path);
   return index;
 }
 

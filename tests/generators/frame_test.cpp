@@ -9,6 +9,7 @@
 #include <fstream>
 
 #include "ensonify/core/error.hpp"
+#include "ensonify/generators/dataset_plan.hpp"
 
 namespace ensonify {
 namespace {
@@ -175,6 +176,17 @@ TEST(Recipe, BundledLoad) {
   EXPECT_EQ(paper.splits[0].frames, 3000);
   EXPECT_EQ(paper.drift.radial_error_m, 1.1);
   EXPECT_NO_THROW(load_recipe("quick"));
+}
+
+TEST_F(Frames, PlanFollowsTheMeshFilesOfItsScenes) {
+  const std::string triangle = "v 0 0 -2\nv 1 0 -2\nv 0 1 -2\nf 1 2 3\n";
+  write("own.obj", triangle);
+  write("b.yaml", "title: own\n" + small_place + "  - {name: own, mesh: own.obj, material: concrete}\n");
+  const FrameMaker maker(recipe(head + "splits:\n" + random_split), default_isa);
+  const std::string before = plan_json(maker, default_isa, SampleFormat::folder);
+  EXPECT_EQ(plan_json(maker, default_isa, SampleFormat::folder), before);
+  write("own.obj", triangle + "v 0 0 -1\nf 1 2 4\n");
+  EXPECT_NE(plan_json(maker, default_isa, SampleFormat::folder), before);  // a resume would mix two places
 }
 
 }  // namespace

@@ -37,7 +37,7 @@ RangeWindow window_of(const Arguments& a) {
   return window;
 }
 
-/// Range of the strongest clean pixel's bin centre, or of the nearest echo at the mask threshold.
+/// Share of the mask, and null or the ranges of the first bin with an echo in it and of the nearest surface.
 nlohmann::json summary(const PingImages& images, const PingTruth& truth, const SonarGeometry& geometry) {
   const auto mask = images.mask.pixels();
   const auto first = std::find(mask.begin(), mask.end(), 255);

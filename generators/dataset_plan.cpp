@@ -87,13 +87,14 @@ void open_dataset(const DatasetPaths& paths, const std::string& plan, bool force
   if (!ours && in_use) {
     throw ConfigError(fmt::format("--out {}: holds other files; name a new or empty folder", paths.root.string()));
   }
-  if (ours && !force && read_text(paths.plan()) != plan) {
+  const bool another = ours && read_text(paths.plan()) != plan;
+  if (another && !force) {
     throw ConfigError(
         fmt::format("--out {}: holds a dataset of another recipe, seed, ISA or format; name another folder, or replace "
                     "it with --force",
                     paths.root.string()));
   }
-  if (ours && force) {
+  if (another) {
     for (const char* entry : own_entries) fs::remove_all(paths.root / entry, error);
   }
   write_file(paths.plan(), plan);

@@ -112,7 +112,8 @@ std::string generate_only(const Recipe& recipe, const GenerateOptions& options, 
   }
   const FrameMaker maker(recipe, options.isa);
   const DatasetPaths paths{options.out};
-  open_dataset(paths, plan_json(maker, options.isa, SampleFormat::folder), options.force);
+  constexpr bool replace = false;  // a whole set is not given up for one frame
+  open_dataset(paths, plan_json(maker, options.isa, SampleFormat::folder), replace);
   return write_frame(maker, paths, index).line;
 }
 

@@ -17,7 +17,8 @@ struct Ping {
 /// equation, with dA = r^2 dOmega / cos i)
 ///     B_tx B_rx sigma(i) / cos(i) dOmega  r^-2 10^(-2 alpha r / 10)
 /// spread over the ranges that its footprint covers: on the tangent plane of the hit, not beyond the neighbouring
-/// rays' hits, and falling as r^-3 as a Lambert plane does. So a plane's echo does not depend on the ray count.
+/// rays' hits, falling as r^-3 as a Lambert plane does and with the flank of the pattern. So a plane's echo does not
+/// depend on the ray count.
 class PingTracer {
  public:
   /// The scene must outlive the tracer.

@@ -180,6 +180,16 @@ class Again(ProgramTest):
         self.assertNotEqual(manifest(out)["root_hash"], first)
         self.succeed("verify", "out")
 
+    def test_force_takes_nothing_from_a_set_of_the_same_plan(self):
+        out = self.generate("out")
+        image = out / "train/raw/000000.png"
+        made = image.stat().st_ino
+        self.generate("out", "--force")  # shards that are all started with --force must not undo each other
+        self.assertEqual(image.stat().st_ino, made)
+        self.refuse(2, ["another recipe, seed"], "generate", "small.yaml", "--out", "out", "--seed", 9, 
+                    "--only", 0, "--force")
+        self.assertEqual(image.stat().st_ino, made)
+
     def test_a_stopped_replacement_does_not_look_complete(self):
         self.recipe(train=700)
         self.recipe("few.yaml", train=32, test=4)

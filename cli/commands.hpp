@@ -12,6 +12,10 @@ void add_sonar(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_voxelize(CLI::App& app);
 
+void add_scene_show(CLI::App& scene_command);
+void add_scene_export(CLI::App& scene_command);
+void add_sonar_show(CLI::App& sonar_command);
+
 /// Ends the program with this code, silently.
 struct ExitCode {
   int code = 0;

@@ -59,9 +59,11 @@ void check(const std::string& path_or_name, std::uint64_t layout) {
 }  // namespace
 
 void add_scene(CLI::App& app) {
-  auto* command = app.add_subcommand("scene", "List the bundled scenes, or check one of your own");
+  auto* command = app.add_subcommand("scene", "List, check, draw and export scenes");
   command->require_subcommand(1);
-  command->footer("Example:\n  ensonify scene list\n  ensonify scene check my_scene.yaml");
+  command->footer(
+      "Example:\n  ensonify scene list\n  ensonify scene check my_scene.yaml\n"
+      "  ensonify scene show marina --out out/dam");
   auto* all = command->add_subcommand("list", "Names and titles of the bundled scenes");
   all->footer("Example:\n  ensonify scene list");
   all->callback(list);
@@ -72,6 +74,8 @@ void add_scene(CLI::App& app) {
   sub->add_option("--layout", *layout, "Layout of the scene")->check(whole_number())->capture_default_str();
   sub->footer("Example:\n  ensonify scene check pier_harbor --layout 3");
   sub->callback([scene, layout] { check(*scene, *layout); });
+  add_scene_show(*command);
+  add_scene_export(*command);
 }
 
 }  // namespace ensonify::cli

@@ -12,7 +12,23 @@ namespace {
 
 void list() {
   for (const std::string& name : library_names("sensor_models"))
-    fmt::print("{:<20} {}\n", name, load_sonar(name).title);
+    fmt::print("{:<22} {}\n", name, load_sonar(name).title);
+}
+
+/// The table of docs/instruments.md.
+void list_markdown() {
+  fmt::print(
+      "| name | what | kHz | beams | fan [deg] | beam [deg] | range [m] | bin [mm] | window [m] | unverified |\n"
+      "|---|---|---|---|---|---|---|---|---|---|\n");
+  for (const std::string& name : library_names("sensor_models")) {
+    const SonarModel s = load_sonar(name);
+    const SonarGeometry& g = s.geometry;
+    fmt::print("| `{}` | {} | {:.0f} | {} | {:.0f} x {:.0f} | {:.2f} | {} to {} | {:.2f} | {} to {} | {} |\n", name,
+               s.title.substr(0, s.title.find(',')), s.frequency_hz / 1e3, g.beams(),
+               degrees(g.beam_azimuth_rad.front() - g.beam_azimuth_rad.back()), degrees(g.elevation_fov_rad),
+               degrees(s.receive_azimuth.width_rad()), s.instrument_range_min_m, s.instrument_range_max_m,
+               1e3 * s.native_bin_m, g.range_min_m, g.range_max_m, fmt::join(s.unverified, ", "));
+  }
 }
 
 void check(const std::string& path_or_name) {
@@ -37,17 +53,22 @@ void check(const std::string& path_or_name) {
 }  // namespace
 
 void add_sonar(CLI::App& app) {
-  auto* command = app.add_subcommand("sonar", "List the bundled sonars, or check one of your own");
+  auto* command = app.add_subcommand("sonar", "List, check and draw sonars");
   command->require_subcommand(1);
-  command->footer("Example:\n  ensonify sonar list\n  ensonify sonar check my_sonar.yaml");
+  command->footer(
+      "Example:\n  ensonify sonar list\n  ensonify sonar check my_sonar.yaml\n"
+      "  ensonify sonar show oculus_m750d_hf --out out/m750d");
   auto* all = command->add_subcommand("list", "Names and titles of the bundled sonars");
   all->footer("Example:\n  ensonify sonar list");
-  all->callback(list);
+  auto markdown = std::make_shared<bool>(false);
+  all->add_flag("--markdown", *markdown, "As a table with the main figures");
+  all->callback([markdown] { *markdown ? list_markdown() : list(); });
   auto* sub = command->add_subcommand("check", "Load a sonar and say what it is, or what is wrong with it");
   auto sonar = std::make_shared<std::string>();
   sub->add_option("SONAR", *sonar, "Sonar YAML or bundled name")->required();
   sub->footer("Example:\n  ensonify sonar check oculus_m1200d_hf");
   sub->callback([sonar] { check(*sonar); });
+  add_sonar_show(*command);
 }
 
 }  // namespace ensonify::cli

@@ -19,6 +19,9 @@ namespace {
 
 constexpr std::array<std::uint8_t, 8> signature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
 constexpr int fastest = 1;
+constexpr int thorough = 9;
+/// Of IHDR, PNG specification 11.2.2.
+enum class ColourType : std::uint8_t { grey = 0, colour = 2 };
 
 void put_u32(std::vector<std::uint8_t>& out, std::uint32_t value) {
   for (int shift = 24; shift >= 0; shift -= 8) out.push_back(static_cast<std::uint8_t>(value >> shift));
@@ -37,16 +40,18 @@ void put_chunk(std::vector<std::uint8_t>& out, std::string_view type, std::span<
   put_u32(out, libdeflate_crc32(0, out.data() + start, out.size() - start));
 }
 
-std::vector<std::uint8_t> encode(std::span<const std::uint8_t> scanlines, int width, int height, int bits) {
+std::vector<std::uint8_t> encode(std::span<const std::uint8_t> scanlines, int width, int height, int bits,
+                                 ColourType type = ColourType::grey) {
   const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
-      libdeflate_alloc_compressor(fastest), libdeflate_free_compressor);
+      libdeflate_alloc_compressor(type == ColourType::grey ? fastest : thorough), libdeflate_free_compressor);
   std::vector<std::uint8_t> packed(libdeflate_zlib_compress_bound(compressor.get(), scanlines.size()));
   packed.resize(
       libdeflate_zlib_compress(compressor.get(), scanlines.data(), scanlines.size(), packed.data(), packed.size()));
   std::vector<std::uint8_t> header;
   put_u32(header, static_cast<std::uint32_t>(width));
   put_u32(header, static_cast<std::uint32_t>(height));
-  header.insert(header.end(), {static_cast<std::uint8_t>(bits), 0, 0, 0, 0});  // grey, deflate, no interlace
+  // Bits, colour type, deflate, the one filter method, no interlace.
+  header.insert(header.end(), {static_cast<std::uint8_t>(bits), static_cast<std::uint8_t>(type), 0, 0, 0});
 
   std::vector<std::uint8_t> png(signature.begin(), signature.end());
   png.reserve(packed.size() + 64);
@@ -79,6 +84,22 @@ std::vector<std::uint8_t> encode_png(const Image2<std::uint16_t>& image) {
     }
   }
   return encode(scanlines, image.columns(), image.rows(), 16);
+}
+
+std::vector<std::uint8_t> encode_png(const Image2<Rgb>& image) {
+  std::vector<std::uint8_t> scanlines;
+  scanlines.reserve(3 * image.size() + static_cast<std::size_t>(image.rows()));
+  for (int r = 0; r < image.rows(); ++r) {
+    scanlines.push_back(1);  // filter type: difference to the pixel before
+    Rgb before;
+    for (const Rgb p : image.row(r)) {
+      scanlines.push_back(static_cast<std::uint8_t>(p.red - before.red));
+      scanlines.push_back(static_cast<std::uint8_t>(p.green - before.green));
+      scanlines.push_back(static_cast<std::uint8_t>(p.blue - before.blue));
+      before = p;
+    }
+  }
+  return encode(scanlines, image.columns(), image.rows(), 8, ColourType::colour);
 }
 
 template <typename Grey>

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "ensonify/core/colour.hpp"
 #include "ensonify/core/image2.hpp"
 
 namespace ensonify {
@@ -13,6 +14,9 @@ namespace ensonify {
 /// larger. About 3 ms for 512 x 512 noisy pixels on one core of 2.8 GHz.
 std::vector<std::uint8_t> encode_png(const Image2<std::uint8_t>& image);
 std::vector<std::uint8_t> encode_png(const Image2<std::uint16_t>& image);
+
+/// Colour PNG, 8 bits a channel; well packed, for pictures.
+std::vector<std::uint8_t> encode_png(const Image2<Rgb>& image);
 
 /// Decodes a greyscale PNG; Grey is std::uint8_t or std::uint16_t. Throws DataError naming `name` where the bytes are
 /// broken, larger than 2^28 pixels, or of another depth.

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 
 namespace ensonify {
@@ -11,8 +12,9 @@ struct Material {
   std::string name;
   double lambert_db = -20;
   double specular_db = -60;
-  double specular_exponent = 50;  ///< at least 2
-  std::string source;             ///< where the numbers come from, or "assumed"
+  double specular_exponent = 50;                  ///< at least 2
+  std::string source;                             ///< where the numbers come from, or "assumed"
+  std::array<float, 3> colour{0.6f, 0.6f, 0.6f};  ///< sRGB 0..1, for pictures only
 };
 
 /// sigma(i) for cos_incidence in [0, 1].

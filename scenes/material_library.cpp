@@ -1,5 +1,7 @@
 #include "ensonify/scenes/material_library.hpp"
 
+#include <algorithm>
+
 #include "ensonify/config/library.hpp"
 
 namespace ensonify {
@@ -14,6 +16,11 @@ std::vector<Material> read_materials(Reader& table) {
     material.specular_db = entry.number_or("specular_db", material.specular_db, {-100, 30});
     material.specular_exponent = entry.number_or("specular_exponent", material.specular_exponent, {2, 1e5});
     material.source = entry.text_or("source", "assumed");
+    if (entry.has("colour")) {
+      const std::vector<double> rgb = entry.numbers("colour", 3, {0, 255});
+      std::transform(rgb.begin(), rgb.end(), material.colour.begin(),
+                     [](double v) { return static_cast<float>(v / 255); });
+    }
     entry.finish();
     materials.push_back(material);
   }

@@ -109,6 +109,14 @@ class PackagesTest(unittest.TestCase):
         self.assertGreater(len(files), 500)
         self.assertEqual(self.missing(files, self.everything()), [])
 
+    def test_every_program_that_is_run_is_brought_in_by_the_list(self):
+        sources = [f.read_text() for f in ROOT.glob("*/*.cpp") if f.parent.name not in ("tests", "build", "bench")]
+        programs = set().union(*(re.findall(r'run_program\(\{"([^"]+)"', text) for text in sources))
+        self.assertIn("gnuplot", programs)
+        files = {shutil.which(program) for program in programs}
+        self.assertNotIn(None, files)
+        self.assertEqual(self.missing(files, self.groups["build"]), [])
+
     def test_no_package_is_in_two_groups_and_each_says_why(self):
         packages = self.everything()
         self.assertEqual(len(packages), len(set(packages)))

@@ -10,7 +10,8 @@ namespace {
 const ShapeTable& builders() {
   static const ShapeTable table = [] {
     ShapeTable all;
-    for (const auto& family : {solid_shapes, ground_shapes, structure_shapes, vessel_shapes}) all.merge(family());
+    for (const auto& family : {solid_shapes, line_shapes, ground_shapes, structure_shapes, vessel_shapes})
+      all.merge(family());
     return all;
   }();
   return table;

@@ -31,6 +31,7 @@ using ShapeTable = std::map<std::string, ShapeBuilder>;
 
 // The families; a new shape is a builder and a line in the table of its family.
 ShapeTable solid_shapes();
+ShapeTable line_shapes();
 ShapeTable ground_shapes();
 ShapeTable structure_shapes();
 ShapeTable vessel_shapes();

@@ -36,17 +36,21 @@ BoulderScatter read_rocks(const ShapeRequest& r, std::string_view count_key) {
   scatter.burial = r.field.number_or("burial", scatter.burial, unit_interval);
   scatter.variants = r.field.count_or("variants", scatter.variants, 1, 64);
   scatter.detail = r.field.count_or("detail", scatter.detail, 0, 5);
-  scatter.path_clearance_m = r.field.number_or("path_clearance_m", scatter.path_clearance_m, not_negative);
+  scatter.where.path_clearance_m = r.field.number_or("path_clearance_m", scatter.where.path_clearance_m, not_negative);
   return scatter;
+}
+
+void read_area(const ShapeRequest& r, StrewnArea& where) {
+  Reader& reader = r.field.reader;
+  const std::vector<double> a = reader.numbers("area_m", 4, {-1e4, 1e4});
+  if (a[0] >= a[2] || a[1] >= a[3]) reader.fail("area_m", "must be [x_min, y_min, x_max, y_max]");
+  where.area_m = Eigen::AlignedBox2d(Eigen::Vector2d(a[0], a[1]), Eigen::Vector2d(a[2], a[3]));
+  where.overlap = reader.boolean_or("overlap", false);
 }
 
 Assembly build_boulder_scatter(const ShapeRequest& r) {
   BoulderScatter scatter = read_rocks(r, "boulders");
-  Reader& reader = r.field.reader;
-  const std::vector<double> a = reader.numbers("area_m", 4, {-1e4, 1e4});
-  if (a[0] >= a[2] || a[1] >= a[3]) reader.fail("area_m", "must be [x_min, y_min, x_max, y_max]");
-  scatter.area_m = Eigen::AlignedBox2d(Eigen::Vector2d(a[0], a[1]), Eigen::Vector2d(a[2], a[3]));
-  scatter.overlap = reader.boolean_or("overlap", false);
+  read_area(r, scatter.where);
   return scatter_boulders(scatter, r.ground, r.key);
 }
 

@@ -53,8 +53,8 @@ Polygon pile_line(const SheetPileWall& wall) {
             {half_pitch, half_depth}};
   }
   return {
-      {-half_pitch, 0},       {-0.84 * half_pitch, 0}, {-0.5 * half_pitch, half_depth}, {0.5 * half_pitch, half_depth},
-      {0.84 * half_pitch, 0}, {half_pitch, 0}};
+      {-half_pitch, 0},       {-0.92 * half_pitch, 0}, {-0.5 * half_pitch, half_depth}, {0.5 * half_pitch, half_depth},
+      {0.92 * half_pitch, 0}, {half_pitch, 0}};
 }
 
 }  // namespace

@@ -36,6 +36,7 @@ const std::map<std::string, Sample>& samples() {
        {"link_length_m: 0.4, start: [0, 0, 0], end: [4, 1, 0], sag_m: 0.5", {-0.2, -0.2, -0.7}, {4.2, 1.2, 0.2}}},
       {"tyre", {"outer_radius_m: 0.5", {-0.5, -0.5, -0.14}, {0.5, 0.5, 0.14}}},
       {"hull", {"length_m: 8, beam_m: 2.6, draft_m: 0.8", {-4.2, -1.31, -0.81}, {4.2, 1.31, 0.61}}},
+      {"ship", {"length_m: 80, damage: 0.8", {-48, -14, -16}, {48, 14, 20}, true}},
       {"boulder", {"radius_m: 0.5", {-1, -1, -1}, {1, 1, 1}, true}},
       {"fractal", {"length_m: 4, width_m: 2", {-2, -1, -1.5}, {2, 1, 1}, true}},
       {"rippled",

@@ -5,6 +5,8 @@
 #include <numbers>
 #include <utility>
 
+#include "ensonify/scenes/loft.hpp"
+
 namespace ensonify {
 namespace {
 
@@ -97,6 +99,15 @@ TriangleMesh make_cone(double radius_m, double top_radius_m, double height_m, in
     }
   }
   return mesh;
+}
+
+TriangleMesh make_torus(double ring_radius_m, double tube_radius_m, int segments, int tube_segments) {
+  Polygon circle;
+  for (int i = 0; i < tube_segments; ++i) {
+    const double angle = 2.0 * std::numbers::pi * i / tube_segments;
+    circle.emplace_back(ring_radius_m + tube_radius_m * std::cos(angle), tube_radius_m * std::sin(angle));
+  }
+  return turn_ring_profile(circle, segments);
 }
 
 TriangleMesh make_plane(double length_m, double width_m) {

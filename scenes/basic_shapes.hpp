@@ -15,6 +15,9 @@ TriangleMesh make_cylinder(double radius_m, double height_m, int segments = 48);
 /// Frustum; a top radius of 0 ends in a point.
 TriangleMesh make_cone(double radius_m, double top_radius_m, double height_m, int segments = 48);
 
+/// Ring about z: `tube_segments` across the tube, `segments` around. The tube radius is below the ring radius.
+TriangleMesh make_torus(double ring_radius_m, double tube_radius_m, int segments = 64, int tube_segments = 24);
+
 /// Open rectangle in z = 0, seen from +z.
 TriangleMesh make_plane(double length_m, double width_m);
 

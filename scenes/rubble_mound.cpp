@@ -34,9 +34,9 @@ double mound_height_m(const RubbleMound& mound, double x_m, double y_m) {
 
 Assembly build_rubble_mound(const RubbleMound& mound, const ScatterGround& ground, RandomKey key) {
   BoulderScatter rocks = mound.rocks;
-  rocks.overlap = true;
+  rocks.where.overlap = true;
   const double toe_m = 0.5 * mound.crest_width_m + foot_width_m(mound) + 0.5;
-  rocks.area_m =
+  rocks.where.area_m =
       Eigen::AlignedBox2d(Eigen::Vector2d(-0.5 * mound.length_m, -toe_m),
                           Eigen::Vector2d(0.5 * mound.length_m, mound.one_sided ? 0.5 * mound.crest_width_m : toe_m));
   const ScatterGround top{

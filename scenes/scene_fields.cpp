@@ -1,5 +1,7 @@
 #include "ensonify/scenes/scene_fields.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <vector>
 
@@ -48,6 +50,31 @@ Pose read_pose(Reader& reader, std::string_view key, RandomSequence& random) {
   if (v.size() == 3) v.resize(6, 0.0);
   if (v.size() != 6) reader.fail(key, "must be [x, y, z] or [x, y, z, roll, pitch, yaw] in metres and degrees");
   return pose_from_xyz_rpy({v[0], v[1], v[2]}, radians(v[3]), radians(v[4]), radians(v[5]));
+}
+
+std::vector<std::vector<double>> read_points(Reader& reader, std::string_view key, std::size_t dimensions,
+                                             std::size_t low, std::size_t high) {
+  constexpr double far_m = 1e4;
+  const YAML::Node list = reader.node(key);
+  const auto refuse = [&](const std::string& why) { reader.fail(key, why); };
+  if (!list.IsSequence() || list.size() < low || list.size() > high) {
+    refuse(fmt::format("must be a list of {} to {} points of {} numbers", low, high, dimensions));
+  }
+  std::vector<std::vector<double>> points;
+  for (const auto& entry : list) {
+    std::vector<double> point;
+    for (const auto& item : entry) {
+      double number = 0;
+      if (!item.IsScalar() || !YAML::convert<double>::decode(item, number) || !(std::abs(number) <= far_m)) break;
+      point.push_back(number);
+    }
+    if (!entry.IsSequence() || point.size() != dimensions || entry.size() != dimensions) {
+      refuse(fmt::format("point {} must be a list of {} numbers between -{:g} and {:g}", points.size(), dimensions,
+                         far_m, far_m));
+    }
+    points.push_back(std::move(point));
+  }
+  return points;
 }
 
 Eigen::AlignedBox3d read_box(Reader& reader, std::string_view key) {

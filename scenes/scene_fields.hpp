@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include "ensonify/config/distribution.hpp"
 #include "ensonify/config/reader.hpp"
@@ -24,6 +25,10 @@ struct FieldSampler {
 /// `key` as [x, y, z] or [x, y, z, roll, pitch, yaw] (m, degrees), or as a mapping {x_m, y_m, z_m, roll_deg, pitch_deg,
 /// yaw_deg} whose values may be distributions.
 Pose read_pose(Reader& reader, std::string_view key, RandomSequence& random);
+
+/// [[a, b, ...], ...]: `low` to `high` points of `dimensions` finite numbers within 10 km of 0.
+std::vector<std::vector<double>> read_points(Reader& reader, std::string_view key, std::size_t dimensions,
+                                             std::size_t low, std::size_t high);
 
 /// {min: [x, y, z], max: [x, y, z]} (m), not empty along any axis.
 Eigen::AlignedBox3d read_box(Reader& reader, std::string_view key);

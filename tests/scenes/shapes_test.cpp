@@ -143,7 +143,7 @@ TEST(PileRow, PilesHangFromTheRowAndShareOneMesh) {
 TEST(BoulderScatter, StonesLieApartAndClearOfThePath) {
   BoulderScatter scatter;
   scatter.boulders = 60;
-  scatter.area_m = Eigen::AlignedBox2d(Eigen::Vector2d(-5, -5), Eigen::Vector2d(5, 5));
+  scatter.where.area_m = Eigen::AlignedBox2d(Eigen::Vector2d(-5, -5), Eigen::Vector2d(5, 5));
   scatter.radius_m = Uniform{0.2, 0.5};
   const ScatterGround ground{[](double, double) { return -3.0; }, {{-5, 0, -2.5}, {5, 0, -2.5}}};
   const Assembly stones = scatter_boulders(scatter, ground, RandomKey::from_seed(2));
@@ -151,7 +151,8 @@ TEST(BoulderScatter, StonesLieApartAndClearOfThePath) {
   for (const Part& part : stones.parts) {
     const TriangleMesh& mesh = stones.meshes[static_cast<std::size_t>(part.mesh)];
     for (const Eigen::Vector3f& v : mesh.vertices_m) {
-      ASSERT_GE(distance_to_path_m(part.T_object_part * v.cast<double>(), ground.path_m), scatter.path_clearance_m);
+      ASSERT_GE(distance_to_path_m(part.T_object_part * v.cast<double>(), ground.path_m),
+                scatter.where.path_clearance_m);
     }
     EXPECT_LT(bounding_box_m(mesh, part.T_object_part).min().z(), -3.0 + 0.1) << "a stone hangs above the ground";
   }

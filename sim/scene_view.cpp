@@ -159,6 +159,21 @@ Scene without_surface(const Scene& scene) {
   return solid;
 }
 
+/// What there is to see within the bounds, seen from above; the water over it is not.
+Eigen::AlignedBox3d visible_box(const Scene& scene) {
+  Eigen::AlignedBox3d solid;
+  for (const Instance& instance : scene.instances) {
+    if (!instance.obstacle) continue;
+    for (const Vector3f& v : scene.meshes[static_cast<std::size_t>(instance.mesh)].vertices_m) {
+      solid.extend(instance.T_world_object * v.cast<double>());
+    }
+  }
+  Eigen::AlignedBox3d window = scene.bounds_m;
+  window.max().z() = std::max(window.max().z(), solid.max().z());
+  const Eigen::AlignedBox3d both = window.intersection(solid);
+  return both.isEmpty() ? scene.bounds_m : both;
+}
+
 }  // namespace
 
 Camera plan_camera(const Scene& scene) {
@@ -175,18 +190,18 @@ Camera side_camera(const Scene& scene) {
 
 Camera oblique_camera(const Scene& scene, double azimuth_rad, double elevation_rad, double aspect) {
   constexpr double field_of_view_rad = radians(32.0);
+  const Eigen::AlignedBox3d box = visible_box(scene);
   const Pose look = pose_from_xyz_rpy(Vec3::Zero(), 0, elevation_rad, azimuth_rad + std::numbers::pi);
   const double half_x = std::tan(0.5 * field_of_view_rad), half_z = half_x / aspect;
   // The smallest distance from which all eight corners are within the picture.
   double distance_m = 0;
   for (int c = 0; c < 8; ++c) {
-    const Vec3 corner =
-        scene.bounds_m.corner(static_cast<Eigen::AlignedBox3d::CornerType>(c)) - scene.bounds_m.center();
+    const Vec3 corner = box.corner(static_cast<Eigen::AlignedBox3d::CornerType>(c)) - box.center();
     const Vec3 seen = look.linear().transpose() * corner;
     distance_m = std::max({distance_m, std::abs(seen.y()) / half_x - seen.x(), std::abs(seen.z()) / half_z - seen.x()});
   }
   Pose T = look;
-  T.translation() = scene.bounds_m.center() - look.linear().col(0) * (1.02 * distance_m);
+  T.translation() = box.center() - look.linear().col(0) * (1.02 * distance_m);
   return {T, 0, field_of_view_rad};
 }
 

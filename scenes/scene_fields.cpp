@@ -1,5 +1,7 @@
 #include "ensonify/scenes/scene_fields.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <vector>
 
@@ -48,6 +50,27 @@ Pose read_pose(Reader& reader, std::string_view key, RandomSequence& random) {
   if (v.size() == 3) v.resize(6, 0.0);
   if (v.size() != 6) reader.fail(key, "must be [x, y, z] or [x, y, z, roll, pitch, yaw] in metres and degrees");
   return pose_from_xyz_rpy({v[0], v[1], v[2]}, radians(v[3]), radians(v[4]), radians(v[5]));
+}
+
+std::vector<Pose> read_waypoints(Reader& reader, std::string_view key) {
+  const YAML::Node list = reader.node(key);
+  if (!list.IsSequence()) reader.fail(key, "must be a list of [x, y, z, roll, pitch, yaw]");
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    std::vector<double> v;
+    bool numbers = list[i].IsSequence();
+    for (const auto& item : list[i]) {
+      double number = 0;
+      numbers = numbers && item.IsScalar() && YAML::convert<double>::decode(item, number) &&
+                std::abs(number) <= place_m.high;  // false for NaN too
+      v.push_back(number);
+    }
+    if (!numbers || v.size() != 6) {
+      reader.fail(key, fmt::format("entry {} must be [x, y, z, roll, pitch, yaw] in metres and degrees", i));
+    }
+    poses.push_back(pose_from_xyz_rpy({v[0], v[1], v[2]}, radians(v[3]), radians(v[4]), radians(v[5])));
+  }
+  return poses;
 }
 
 Eigen::AlignedBox3d read_box(Reader& reader, std::string_view key) {

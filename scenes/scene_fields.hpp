@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string_view>
+#include <vector>
 
 #include "ensonify/config/distribution.hpp"
 #include "ensonify/config/reader.hpp"
@@ -24,6 +25,9 @@ struct FieldSampler {
 /// `key` as [x, y, z] or [x, y, z, roll, pitch, yaw] (m, degrees), or as a mapping {x_m, y_m, z_m, roll_deg, pitch_deg,
 /// yaw_deg} whose values may be distributions.
 Pose read_pose(Reader& reader, std::string_view key, RandomSequence& random);
+
+/// A list of [x, y, z, roll, pitch, yaw] (m, degrees) under `key`.
+std::vector<Pose> read_waypoints(Reader& reader, std::string_view key);
 
 /// {min: [x, y, z], max: [x, y, z]} (m), not empty along any axis.
 Eigen::AlignedBox3d read_box(Reader& reader, std::string_view key);

@@ -9,7 +9,7 @@
 
 #include "ensonify/core/parallel.hpp"
 #include "ensonify/generators/form_images.hpp"
-#include "ensonify/generators/waypoint_path.hpp"
+#include "ensonify/generators/trajectory.hpp"
 #include "ensonify/sim/flush_denormals.hpp"
 #include "ensonify/sim/trace_ping.hpp"
 
@@ -26,8 +26,8 @@ struct Setup {
         sonar(load_sonar("oculus_m1200d_hf")),
         tracer(rays, sonar, scene.water),
         spread(sonar) {
-    const WaypointPath path(scene.waypoints);
-    for (int i = 0; i < poses_along_path; ++i) poses.push_back(path.at(path.length_m() * i / poses_along_path));
+    const Trajectory path(TrajectoryPoses{}, scene, RandomKey{});
+    for (int i = 0; i < poses_along_path; ++i) poses.push_back(path.at(0.5 * path.repeats_s() * i / poses_along_path));
     SampledValues sampled;
     settings.noise = sample_noise(load_noise("paper"), RandomKey{}, sampled);
   }
@@ -115,8 +115,8 @@ void pose_to_image(benchmark::State& state, const char* place) {
           form_images(setup.sonar, setup.spread, ping.echo, ping.truth, setup.settings, key).raw.grey.pixels().data());
     });
   }
-  state.counters["pings_per_s"] = benchmark::Counter(static_cast<double>(state.iterations()) * poses_along_path,
-                                                     benchmark::Counter::kIsRate);
+  state.counters["pings_per_s"] =
+      benchmark::Counter(static_cast<double>(state.iterations()) * poses_along_path, benchmark::Counter::kIsRate);
 }
 
 BENCHMARK_CAPTURE(trace_ping, pier_harbor, "pier_harbor")->Unit(benchmark::kMillisecond);

@@ -58,6 +58,11 @@ std::string plan_json(const FrameMaker& maker, const std::string& isa, SampleFor
     for (const fs::path& mesh : load_scene(place.scene, place.layout).mesh_files) hash.add(read_file(mesh));
     plan["scene_sha256"][place.scene] = hash.hex();
   }
+  for (const Split& split : maker.recipe().splits) {
+    const auto* trajectory = std::get_if<TrajectoryPoses>(&split.poses);
+    const auto* recorded = trajectory ? std::get_if<RecordedPath>(&trajectory->path) : nullptr;
+    if (recorded) plan["trajectory_sha256"][split.name] = Sha256().add(read_file(recorded->file)).hex();
+  }
   return plan.dump(1);
 }
 

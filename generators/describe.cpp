@@ -1,5 +1,6 @@
 #include "ensonify/generators/describe.hpp"
 
+#include <array>
 #include <nlohmann/json.hpp>
 
 namespace ensonify {
@@ -16,6 +17,73 @@ json describe(const Distribution& distribution) {
   } visitor;
   return std::visit(visitor, distribution);
 }
+
+namespace {
+
+/// The path under the key that the recipe has for it.
+json describe_path(const PathSpec& path) {
+  struct {
+    json operator()(const SceneWaypoints&) const { return {{"path", "waypoints"}}; }
+    json operator()(const OwnWaypoints& own) const {
+      json list = json::array();
+      for (const Pose& pose : own.T_world_sonar) {
+        const Vec3 p = pose.translation();
+        const auto [roll, pitch, yaw] = roll_pitch_yaw(pose);
+        list.push_back({p.x(), p.y(), p.z(), degrees(roll), degrees(pitch), degrees(yaw)});
+      }
+      return {{"waypoints", list}};
+    }
+    json operator()(const Lawnmower& mow) const {
+      json entry{{"depth_m", mow.depth_m},
+                 {"spacing_m", mow.spacing_m},
+                 {"heading_deg", mow.heading_deg},
+                 {"pitch_deg", mow.pitch_deg}};
+      if (const auto& a = mow.area_m) entry["area"] = {a->min().x(), a->min().y(), a->max().x(), a->max().y()};
+      return {{"lawnmower", entry}};
+    }
+    json operator()(const Orbit& orbit) const {
+      json entry{{"radius_m", orbit.radius_m},
+                 {"depth_m", orbit.depth_m},
+                 {"clockwise", orbit.clockwise},
+                 {"start_deg", orbit.start_deg}};
+      if (const auto* object = std::get_if<std::string>(&orbit.about)) entry["object"] = *object;
+      if (const auto* c = std::get_if<Vec3>(&orbit.about)) entry["center"] = {c->x(), c->y(), c->z()};
+      if (orbit.pitch_deg) entry["pitch_deg"] = *orbit.pitch_deg;
+      if (orbit.turns) entry["turns"] = *orbit.turns;
+      return {{"orbit", entry}};
+    }
+    json operator()(const WallFollow& wall) const {
+      constexpr std::array names{"all", "east", "north", "west", "south"};
+      return {{"wall",
+               {{"object", wall.object},
+                {"standoff_m", wall.standoff_m},
+                {"depth_m", wall.depth_m},
+                {"pitch_deg", wall.pitch_deg},
+                {"side", names[static_cast<std::size_t>(wall.side)]},
+                {"clockwise", wall.clockwise}}}};
+    }
+    json operator()(const RecordedPath& recorded) const { return {{"file", recorded.file.string()}}; }
+  } visitor;
+  return std::visit(visitor, path);
+}
+
+json describe_trajectory(const TrajectoryPoses& trajectory) {
+  json entry = describe_path(trajectory.path);
+  entry["rate_hz"] = trajectory.rate_hz;
+  entry["clearance_m"] = trajectory.clearance_m;
+  if (!std::holds_alternative<RecordedPath>(trajectory.path)) {
+    entry["speed_mps"] = describe(trajectory.speed_mps);
+    entry["rounding_m"] = trajectory.rounding_m;
+  }
+  const AttitudeNoise& noise = trajectory.attitude_noise;
+  entry["attitude_noise"] = {{"roll_deg", noise.roll_deg},
+                             {"pitch_deg", noise.pitch_deg},
+                             {"yaw_deg", noise.yaw_deg},
+                             {"period_s", noise.period_s}};
+  return entry;
+}
+
+}  // namespace
 
 json describe(const Recipe& recipe) {
   json sonar{{"model", recipe.sonar}, {"gain_db", describe(recipe.gain_db)}};
@@ -38,8 +106,7 @@ json describe(const Recipe& recipe) {
           {"yaw_deg", describe(random->yaw_deg)},         {"clearance_m", random->clearance_m},
           {"least_seen_share", random->least_seen_share}, {"tries", random->tries}};
     } else {
-      const auto& trajectory = std::get<TrajectoryPoses>(split.poses);
-      entry["trajectory"] = {{"speed_mps", trajectory.speed_mps}, {"rate_hz", trajectory.rate_hz}};
+      entry["trajectory"] = describe_trajectory(std::get<TrajectoryPoses>(split.poses));
     }
     result["splits"][split.name] = entry;
   }

@@ -10,7 +10,7 @@ namespace {
 /// Standard Brownian motion at `time_s`: the walk at the horizon is drawn, then midpoints are filled in, halving the
 /// interval about time_s until it is an eighth of a second; the numbers are addressed by level and place.
 double brownian(RandomKey key, double time_s) {
-  constexpr double horizon_s = 131072.0;
+  constexpr double horizon_s = longest_drift_s;
   constexpr int levels = 20;
   double left_s = 0.0;
   double right_s = horizon_s;

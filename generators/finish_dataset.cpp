@@ -108,6 +108,25 @@ json write_metadata(const FrameMaker& maker, const DatasetPaths& paths, const st
   return shards;
 }
 
+/// How each trajectory moves: one entry a place.
+json describe_motion(const FrameMaker& maker) {
+  json entries = json::array();
+  for (int place = 0; place < static_cast<int>(maker.places().size()); ++place) {
+    const Trajectory* trajectory = maker.trajectory(place);
+    if (!trajectory) continue;
+    const Motion motion = motion_of(*trajectory, maker.swum_until_s(place));
+    json entry{{"place", maker.places()[static_cast<std::size_t>(place)].name},
+               {"duration_s", maker.swum_until_s(place)},
+               {"length_m", motion.length_m},
+               {"max_speed_mps", motion.max_speed_mps},
+               {"max_acceleration_mps2", motion.max_acceleration_mps2},
+               {"max_turn_rate_degps", degrees(motion.max_turn_rate_radps)}};
+    if (trajectory->speed_mps()) entry["speed_mps"] = *trajectory->speed_mps();
+    entries.push_back(entry);
+  }
+  return entries;
+}
+
 json label_legend() {
   return {{"0", "water"},    {"1", "direct echo"}, {"2", "multipath"},
           {"3", "sidelobe"}, {"4", "shadow"},      {"5", "outside"}};
@@ -156,6 +175,7 @@ bool finish_dataset(const FrameMaker& maker, const DatasetPaths& paths, const st
                 {"labels", label_legend()},
                 {"shards", shards},
                 {"grids", grids},
+                {"trajectories", describe_motion(maker)},
                 {"root_hash", root.hex()}};
   for (const Split& split : recipe.splits) manifest["counts"][split.name] = split.frames;
   remove_abandoned(paths.root);

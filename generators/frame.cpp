@@ -8,7 +8,6 @@
 #include "ensonify/core/error.hpp"
 #include "ensonify/generators/drift.hpp"
 #include "ensonify/generators/random_pose.hpp"
-#include "ensonify/generators/waypoint_path.hpp"
 
 namespace ensonify {
 namespace {
@@ -28,6 +27,21 @@ std::optional<double> fixed_range_max(const Recipe& recipe) {
   return std::get<Constant>(*recipe.range_max_m).value;
 }
 
+/// Times in a TUM file have some digits: the last frame may lie this far behind its last pose.
+constexpr double stamp_rounding_s = 1e-6;
+
+const char* cure_of(const PathSpec& path) {
+  struct {
+    const char* operator()(const SceneWaypoints&) const { return "move its waypoints"; }
+    const char* operator()(const OwnWaypoints&) const { return "move its waypoints"; }
+    const char* operator()(const Lawnmower&) const { return "change depth_m or area"; }
+    const char* operator()(const Orbit&) const { return "change radius_m, depth_m or turns"; }
+    const char* operator()(const WallFollow&) const { return "change standoff_m, depth_m or side"; }
+    const char* operator()(const RecordedPath&) const { return "give a file that keeps clear"; }
+  } visitor;
+  return std::visit(visitor, path);
+}
+
 bool window_varies(const Recipe& recipe) {
   return recipe.range_max_m && !std::holds_alternative<Constant>(*recipe.range_max_m);
 }
@@ -38,7 +52,7 @@ struct FrameMaker::Slot {
   std::once_flag built;
   std::optional<Place> place;
   std::optional<PingTracer> tracer;
-  std::optional<WaypointPath> path;
+  std::optional<Trajectory> trajectory;
 };
 
 FrameMaker::FrameMaker(Recipe recipe, std::string isa)
@@ -60,7 +74,10 @@ const FrameMaker::Slot& FrameMaker::slot(int index) const {
       const PlaceRef& ref = places_[static_cast<std::size_t>(index)];
       slot.place.emplace(make_place(ref.scene, ref.layout, isa_));
       slot.tracer.emplace(slot.place->rays, sonar_, slot.place->scene.water);
-      if (!slot.place->scene.waypoints.empty()) slot.path.emplace(slot.place->scene.waypoints);
+      if (const auto* spec = std::get_if<TrajectoryPoses>(&split_of_place(index).poses)) {
+        const RandomKey key = RandomKey::from_seed(recipe_.seed).child("trajectory").child(ref.name);
+        slot.trajectory.emplace(*spec, slot.place->scene, key);
+      }
     });
   });
   return slot;
@@ -89,6 +106,61 @@ FramePose FrameMaker::locate(int index) const {
   return frame;
 }
 
+const Split& FrameMaker::split_of_place(int place) const {
+  std::size_t split = 0;
+  for (int left = place; left >= static_cast<int>(recipe_.splits[split].places.size()); ++split) {
+    left -= static_cast<int>(recipe_.splits[split].places.size());
+  }
+  return recipe_.splits[split];
+}
+
+const Trajectory* FrameMaker::trajectory(int place) const {
+  const Slot& where = slot(place);
+  return where.trajectory ? &*where.trajectory : nullptr;
+}
+
+double FrameMaker::swum_until_s(int place) const {
+  const Split& split = split_of_place(place);
+  const int frames_each = split.frames / static_cast<int>(split.places.size());
+  return (frames_each - 1) / std::get<TrajectoryPoses>(split.poses).rate_hz;
+}
+
+void FrameMaker::check_trajectory(int place) const {
+  const Trajectory* swum = trajectory(place);
+  if (!swum) return;
+  if (swum_until_s(place) > swum->lasts_s() + stamp_rounding_s) refuse_short(place);
+  const auto& spec = std::get<TrajectoryPoses>(split_of_place(place).poses);
+  const auto obstruction = first_obstruction(*swum, this->place(place).truth, spec.clearance_m, swum_until_s(place));
+  if (obstruction) refuse_obstructed(place, *obstruction);
+}
+
+void FrameMaker::refuse_short(int place) const {
+  const Split& split = split_of_place(place);
+  const auto& spec = std::get<TrajectoryPoses>(split.poses);
+  const double lasts_s = trajectory(place)->lasts_s();
+  const int covered = 1 + static_cast<int>((lasts_s + stamp_rounding_s) * spec.rate_hz);
+  throw ConfigError(
+      fmt::format("{}: the file lasts {:.3f} s, which covers {} frames at {} Hz; the split asks for {} in each place: "
+                  "ask for fewer, "
+                  "raise rate_hz, or give a longer file",
+                  spec.where, lasts_s, covered, spec.rate_hz, split.frames / static_cast<int>(split.places.size())));
+}
+
+void FrameMaker::refuse_obstructed(int place, const Obstruction& at) const {
+  const auto& spec = std::get<TrajectoryPoses>(split_of_place(place).poses);
+  const GridFrame& grid = slot(place).place->truth.frame;
+  const auto cell = grid.cell_of(at.p_world);
+  const bool outside = !grid.contains(cell[0], cell[1], cell[2]);
+  const std::string what = outside                  ? "leaves the bounds of the scene"
+                           : spec.clearance_m > 0.0 ? fmt::format("comes within {} m of something", spec.clearance_m)
+                                                    : "runs into something";
+  throw ConfigError(
+      fmt::format("scene {}: the trajectory {} at ({:.2f}, {:.2f}, {:.2f}) m, {:.3g} s after its start "
+                  "({}); {}",
+                  places_[static_cast<std::size_t>(place)].name, what, at.p_world.x(), at.p_world.y(), at.p_world.z(),
+                  at.time_s, spec.where, cure_of(spec.path)));
+}
+
 FramePose FrameMaker::pose(int index) const {
   FramePose frame = locate(index);
   const Split& split = recipe_.splits[frame.split];
@@ -106,21 +178,19 @@ FramePose FrameMaker::pose(int index) const {
     return frame;
   }
 
-  const auto& trajectory = std::get<TrajectoryPoses>(split.poses);
-  const int frames_each = split.frames / static_cast<int>(split.places.size());
+  const auto& spec = std::get<TrajectoryPoses>(split.poses);
   const Slot& where = slot(frame.place);
-  const std::string& name = places_[frame.place].name;
-  if (!where.path) throw ConfigError(fmt::format("scene {}: has no waypoints, which a trajectory split needs", name));
-  const double time_s = (frame.number % frames_each) / trajectory.rate_hz;
+  const int frames_each = split.frames / static_cast<int>(split.places.size());
+  const double time_s = (frame.number % frames_each) / spec.rate_hz;
+  if (time_s > where.trajectory->lasts_s() + stamp_rounding_s) refuse_short(frame.place);
   frame.time_s = time_s;
-  frame.T_world_sonar = where.path->at(trajectory.speed_mps * time_s);
+  frame.T_world_sonar = where.trajectory->at(time_s);
   const Vec3 p = frame.T_world_sonar.translation();
-  if (!has_room(where.place->truth, p, 0.0)) {
-    throw ConfigError(fmt::format(
-        "scene {}: the trajectory runs into something at ({:.2f}, {:.2f}, {:.2f}) m, {} s after its start (frame {}); "
-        "move its waypoints",
-        name, p.x(), p.y(), p.z(), time_s, index));
+  if (!has_room(where.place->truth, p, spec.clearance_m)) refuse_obstructed(frame.place, {time_s, p});
+  if (!std::holds_alternative<Constant>(spec.speed_mps) && where.trajectory->speed_mps()) {
+    frame.sampled.emplace_back("trajectory.speed_mps", *where.trajectory->speed_mps());
   }
+  const std::string& name = places_[frame.place].name;
   const RandomKey drift_key = RandomKey::from_seed(recipe_.seed).child("drift").child(name);
   frame.T_world_sonar_est = drifted(frame.T_world_sonar, recipe_.drift, drift_key, time_s);
   return frame;

@@ -7,6 +7,7 @@
 #include "ensonify/generators/form_images.hpp"
 #include "ensonify/generators/place.hpp"
 #include "ensonify/generators/recipe.hpp"
+#include "ensonify/generators/trajectory.hpp"
 #include "ensonify/sim/trace_ping.hpp"
 
 namespace ensonify {
@@ -45,13 +46,19 @@ class FrameMaker {
   const std::vector<PlaceRef>& places() const { return places_; }
   /// Builds the place if need be.
   const Place& place(int index) const;
+  /// What is swum in a place, and until when; empty where poses are random. Builds the place if need be.
+  const Trajectory* trajectory(int place) const;
+  double swum_until_s(int place) const;
+  /// Looks along the whole path that the frames of a place follow, between the frames too. Throws ConfigError where it
+  /// runs into something, or where a recorded path ends too early.
+  void check_trajectory(int place) const;
 
   /// Split, number and place of a frame, without its pose.
   FramePose locate(int index) const;
   /// The instrument as it is set in a frame.
   SonarModel sonar_for(int index) const;
-  /// Pose of a frame, without its ping. Throws DataError where no random pose keeps the rules, ConfigError where a
-  /// trajectory runs into something.
+  /// Pose of a frame, without its ping. Throws DataError where no random pose keeps the rules, ConfigError where the
+  /// trajectory is inside of something at that time.
   FramePose pose(int index) const;
   Ping ping(const FramePose& pose, bool cell_truth) const;
   Frame make(int index) const;
@@ -61,6 +68,9 @@ class FrameMaker {
   SonarModel sonar_for(int index, SampledValues& sampled) const;
   RandomKey frame_key(int index) const;
   const Slot& slot(int place) const;
+  const Split& split_of_place(int place) const;
+  [[noreturn]] void refuse_short(int place) const;
+  [[noreturn]] void refuse_obstructed(int place, const Obstruction& at) const;
 
   Recipe recipe_;
   std::string isa_;

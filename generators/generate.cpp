@@ -21,14 +21,13 @@ bool is_done(const DatasetPaths& paths, const Block& block) {
   return std::filesystem::is_regular_file(paths.block(block.index), error);
 }
 
-/// A trajectory inside a wall is a mistake in the configuration: found before any work is done.
+/// A trajectory into a wall is a mistake in the configuration: found before any work is done.
 void check_trajectories(const FrameMaker& maker) {
-  int first = 0;
+  int place = 0;
   for (const Split& split : maker.recipe().splits) {
-    if (std::holds_alternative<TrajectoryPoses>(split.poses)) {
-      for (int i = 0; i < split.frames; ++i) maker.pose(first + i);
+    for (std::size_t i = 0; i < split.places.size(); ++i, ++place) {
+      if (std::holds_alternative<TrajectoryPoses>(split.poses)) maker.check_trajectory(place);
     }
-    first += split.frames;
   }
 }
 
@@ -114,6 +113,7 @@ std::string generate_only(const Recipe& recipe, const GenerateOptions& options, 
   const DatasetPaths paths{options.out};
   constexpr bool replace = false;  // a whole set is not given up for one frame
   open_dataset(paths, plan_json(maker, options.isa, SampleFormat::folder), replace);
+  maker.check_trajectory(maker.locate(index).place);
   return write_frame(maker, paths, index).line;
 }
 

@@ -7,6 +7,8 @@
 
 #include "ensonify/config/library.hpp"
 #include "ensonify/config/reader.hpp"
+#include "ensonify/generators/drift.hpp"
+#include "ensonify/generators/read_trajectory.hpp"
 
 namespace ensonify {
 namespace {
@@ -55,14 +57,6 @@ RandomPoses read_random_poses(Reader poses) {
   return random;
 }
 
-TrajectoryPoses read_trajectory_poses(Reader poses) {
-  TrajectoryPoses trajectory;
-  trajectory.speed_mps = poses.number_or("speed_mps", trajectory.speed_mps, {0.001, 20.0});
-  trajectory.rate_hz = poses.number_or("rate_hz", trajectory.rate_hz, {0.001, 1000.0});
-  poses.finish();
-  return trajectory;
-}
-
 Split read_split(const std::string& name, Reader split) {
   Split result;
   result.name = name;
@@ -74,11 +68,17 @@ Split read_split(const std::string& name, Reader split) {
     result.frames = split.integer("frames", 1, max_frames);
   }
   if (split.has("trajectory")) {
-    result.poses = read_trajectory_poses(split.child("trajectory"));
-    if (result.frames % static_cast<int>(result.places.size()) != 0) {
-      split.fail("frames",
-                 fmt::format("must be a multiple of the {} places of a trajectory split", result.places.size()));
+    const TrajectoryPoses trajectory = read_trajectory(split.child("trajectory"));
+    const int places = static_cast<int>(result.places.size());
+    if (result.frames % places != 0) {
+      split.fail("frames", fmt::format("must be a multiple of the {} places of a trajectory split", places));
     }
+    if (result.frames / places / trajectory.rate_hz > longest_drift_s) {
+      split.fail("trajectory", fmt::format("takes longer than the {:.0f} s that the drift is modelled for; ask for "
+                                           "fewer frames or a higher rate_hz",
+                                           longest_drift_s));
+    }
+    result.poses = trajectory;
   } else {
     result.poses = read_random_poses(split.child("random_poses"));
   }

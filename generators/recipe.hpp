@@ -1,12 +1,12 @@
 #pragma once
 
 #include <cstdint>
-#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "ensonify/config/distribution.hpp"
+#include "ensonify/generators/trajectory_spec.hpp"
 
 namespace ensonify {
 
@@ -26,12 +26,6 @@ struct RandomPoses {
   double clearance_m = 0.3;       ///< radius free of occupied cells
   double least_seen_share = 0.1;  ///< of a coarse fan's rays that must meet something within the range window
   int tries = 200;                ///< then the frame fails and says so
-};
-
-/// The place's waypoints swum at constant speed, back and forth.
-struct TrajectoryPoses {
-  double speed_mps = 0.5;
-  double rate_hz = 2;
 };
 
 struct Split {
@@ -67,7 +61,7 @@ struct Recipe {
 };
 
 /// Loads a recipe (path or bundled name). Scene, sonar and noise files are relative to the recipe, or bundled names.
-/// Throws ConfigError, also where two splits share a place.
+/// Throws ConfigError, also where two splits share a place; DataError where a trajectory file is broken.
 Recipe load_recipe(const std::string& path_or_name);
 
 }  // namespace ensonify

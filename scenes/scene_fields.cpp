@@ -77,6 +77,14 @@ std::vector<std::vector<double>> read_points(Reader& reader, std::string_view ke
   return points;
 }
 
+std::vector<Pose> read_waypoints(Reader& reader, std::string_view key) {
+  std::vector<Pose> poses;
+  for (const auto& v : read_points(reader, key, 6, 1, 10'000)) {
+    poses.push_back(pose_from_xyz_rpy({v[0], v[1], v[2]}, radians(v[3]), radians(v[4]), radians(v[5])));
+  }
+  return poses;
+}
+
 Eigen::AlignedBox3d read_box(Reader& reader, std::string_view key) {
   Reader child = reader.child(key);
   const Vec3 low = child.vec3("min");

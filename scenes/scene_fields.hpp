@@ -30,6 +30,9 @@ Pose read_pose(Reader& reader, std::string_view key, RandomSequence& random);
 std::vector<std::vector<double>> read_points(Reader& reader, std::string_view key, std::size_t dimensions,
                                              std::size_t low, std::size_t high);
 
+/// A list of [x, y, z, roll, pitch, yaw] (m, degrees) under `key`.
+std::vector<Pose> read_waypoints(Reader& reader, std::string_view key);
+
 /// {min: [x, y, z], max: [x, y, z]} (m), not empty along any axis.
 Eigen::AlignedBox3d read_box(Reader& reader, std::string_view key);
 

@@ -40,24 +40,13 @@ void read_extent(Reader& file, Scene& scene) {
   }
 }
 
-void read_waypoints(Reader& file, Scene& scene) {
+void take_waypoints(Reader& file, Scene& scene) {
   if (!file.has("waypoints")) return;
-  const YAML::Node list = file.node("waypoints");
-  if (!list.IsSequence()) file.fail("waypoints", "must be a list of [x, y, z, roll, pitch, yaw]");
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    std::vector<double> v;
-    for (const auto& item : list[i]) {
-      double number = 0;
-      if (!item.IsScalar() || !YAML::convert<double>::decode(item, number) || !std::isfinite(number)) v.clear();
-      v.push_back(number);
-    }
-    if (v.size() != 6) {
-      file.fail("waypoints", fmt::format("entry {} must be [x, y, z, roll, pitch, yaw] in metres and degrees", i));
-    }
-    if (!scene.navigable_m.contains(Vec3(v[0], v[1], v[2]))) {
+  scene.waypoints = read_waypoints(file, "waypoints");
+  for (std::size_t i = 0; i < scene.waypoints.size(); ++i) {
+    if (!scene.navigable_m.contains(scene.waypoints[i].translation())) {
       file.fail("waypoints", fmt::format("entry {} lies outside navigable", i));
     }
-    scene.waypoints.push_back(pose_from_xyz_rpy({v[0], v[1], v[2]}, radians(v[3]), radians(v[4]), radians(v[5])));
   }
 }
 
@@ -143,7 +132,7 @@ Scene load_scene(const std::string& path_or_name, std::uint64_t layout) {
   scene.title = file.text_or("title", scene.name);
   scene.water = read_water(file);
   read_extent(file, scene);
-  read_waypoints(file, scene);
+  take_waypoints(file, scene);
   draft.known_materials = all_materials(file);
 
   add_seabed(file, draft, layout_key);

@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <fstream>
+#include <functional>
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/generators/dataset_plan.hpp"
@@ -15,6 +16,8 @@ namespace ensonify {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::AnyOf;
 using testing::HasSubstr;
 
 const std::string small_place = R"(
@@ -69,6 +72,15 @@ class Frames : public testing::Test {
   }
 };
 
+std::string error_of(const std::function<void()>& work) {
+  try {
+    work();
+  } catch (const ConfigError& e) {
+    return e.what();
+  }
+  return {};
+}
+
 TEST_F(Frames, SameInAnyOrderAndAlone) {
   const Recipe r = recipe(head + "splits:\n" + random_split + swum_split);
   ASSERT_EQ(r.frames(), 11);
@@ -99,7 +111,8 @@ TEST_F(Frames, SameInAnyOrderAndAlone) {
     EXPECT_LE(value("sonar.range_max_m"), 6.0);
     EXPECT_LE(std::abs(value("sonar.gain_db")), 3.0);
   }
-  // Random poses take the places in turn, have no time and no drift; trajectories run at 0.5 m/s and 2 Hz.
+  // Random poses take the places in turn, have no time and no drift; trajectories run at 0.5 m/s and 2 Hz, from rest:
+  // rounding by 1 m leaves them 5/16 m behind.
   EXPECT_EQ(frames[0].pose.place, 0);
   EXPECT_EQ(frames[1].pose.place, 1);
   EXPECT_FALSE(frames[0].pose.time_s.has_value());
@@ -107,24 +120,75 @@ TEST_F(Frames, SameInAnyOrderAndAlone) {
   EXPECT_EQ(frames[8].pose.place, 2);
   EXPECT_EQ(frames[8].pose.number, 2);
   EXPECT_EQ(frames[8].pose.time_s, 1.0);
-  EXPECT_TRUE(frames[8].pose.T_world_sonar.translation().isApprox(Vec3(-2, -1.5, -2), 1e-9));
+  EXPECT_TRUE(frames[6].pose.T_world_sonar.translation().isApprox(Vec3(-2, -2, -2), 1e-9));
+  EXPECT_TRUE(frames[10].pose.T_world_sonar.translation().isApprox(Vec3(-2, -1 - 5.0 / 16, -2), 1e-9));
   EXPECT_TRUE(frames[6].pose.T_world_sonar_est.isApprox(frames[6].pose.T_world_sonar, 1e-12));  // no drift at t = 0
 }
 
 TEST_F(Frames, TrajectoryIntoAnObjectIsAConfigErrorWithItsPlace) {
   std::string text = head + "splits:\n" + swum_split;
   text.replace(text.find("way.yaml"), 8, "into.yaml");
-  text.replace(text.find("frames: 5"), 9, "frames: 9");  // 0.25 m a frame from x = -2: the block begins at -0.5
+  text.replace(text.find("frames: 5"), 9, "frames: 10");
+  // 0.25 m a frame from x = -2, the rounding 5/16 m behind: frame 9 is at -0.0625, the block begins at -0.5.
   const FrameMaker maker(recipe(text), default_isa);
-  EXPECT_NO_THROW(maker.pose(5));
-  try {
-    maker.pose(8);
-    FAIL();
-  } catch (const ConfigError& e) {
-    EXPECT_THAT(e.what(), HasSubstr("into"));
-    EXPECT_THAT(e.what(), HasSubstr("(0.00, 0.00, -2.00) m"));
-    EXPECT_THAT(e.what(), HasSubstr("4 s after its start"));
+  EXPECT_NO_THROW(maker.pose(6));
+  EXPECT_THAT(error_of([&] { maker.pose(9); }),
+              AllOf(HasSubstr("into"), HasSubstr("(-0.06, 0.00, -2.00) m"), HasSubstr("4.5 s after its start"),
+                    HasSubstr("move its waypoints")));
+  // The check looks between the frames too: the cell that the block's side touches begins at -0.6.
+  EXPECT_THAT(error_of([&] { maker.check_trajectory(0); }),
+              AnyOf(HasSubstr("(-0.60, 0.00"), HasSubstr("(-0.56, 0.00")));
+}
+
+TEST_F(Frames, APathThatSlipsThroughBetweenItsFramesIsRefused) {
+  std::string text = head + "splits:\n" + swum_split;
+  text.replace(text.find("way.yaml"), 8, "into.yaml");
+  text.replace(text.find("speed_mps: 0.5, rate_hz: 2"), 26, "speed_mps: 1.7, rate_hz: 0.5");  // 3.4 m a frame
+  text.replace(text.find("frames: 5"), 9, "frames: 2");
+  const FrameMaker maker(recipe(text), default_isa);
+  EXPECT_NO_THROW(maker.pose(0));
+  EXPECT_NO_THROW(maker.pose(1));  // behind the block
+  EXPECT_THAT(error_of([&] { maker.check_trajectory(0); }), HasSubstr("runs into something"));
+  text.replace(text.find("rate_hz: 0.5"), 12, "rate_hz: 0.5, clearance_m: 1");
+  const FrameMaker wide(recipe(text), default_isa);
+  EXPECT_THAT(error_of([&] { wide.check_trajectory(0); }), HasSubstr("comes within 1 m of something"));
+}
+
+TEST_F(Frames, OnlyARecordLongEnoughIsSwum) {
+  write("short.txt", "10 -2 -2 -2 0 0 0 1\n11.5 -2 -1 -2 0 0 0 1\n");  // 1.5 s: frames 0 to 3 at 2 Hz
+  std::string text = head + "splits:\n" + swum_split;
+  text.replace(text.find("speed_mps: 0.5, rate_hz: 2"), 26, "file: short.txt, rate_hz: 2");
+  const FrameMaker maker(recipe(text), default_isa);
+  EXPECT_TRUE(maker.pose(3).T_world_sonar.translation().isApprox(Vec3(-2, -1, -2), 1e-12));
+  EXPECT_NEAR(maker.pose(1).T_world_sonar.translation().y(), -2 + 1.0 / 3, 1e-12);
+  EXPECT_EQ(maker.pose(1).time_s, 0.5);
+  const auto short_by_one = AllOf(HasSubstr("recipe.yaml:8: splits.test.trajectory.file"), HasSubstr("covers 4 frames"),
+                                  HasSubstr("asks for 5"));
+  EXPECT_THAT(error_of([&] { maker.pose(4); }), short_by_one);
+  EXPECT_THAT(error_of([&] { maker.check_trajectory(0); }), short_by_one);
+  const std::string before = plan_json(maker, default_isa, SampleFormat::folder);
+  write("short.txt", "10 -2 -2 -2 0 0 0 1\n11.5 -2 -1.1 -2 0 0 0 1\n");
+  EXPECT_NE(plan_json(maker, default_isa, SampleFormat::folder), before);  // a resume would mix two paths
+}
+
+TEST_F(Frames, SpeedIsDrawnOnceAPlaceAndRecorded) {
+  std::string text = head + "splits:\n" + swum_split;
+  text.replace(text.find("speed_mps: 0.5"), 14, "speed_mps: {uniform: [0.2, 0.4]}");
+  text.replace(text.find("[{scene: way.yaml}]"), 19, "[{scene: way.yaml, layouts: [0, 1]}]");
+  text.replace(text.find("frames: 5"), 9, "frames: 6");
+  const FrameMaker maker(recipe(text), default_isa);
+  std::vector<double> speeds;
+  for (int i = 0; i < 6; ++i) {
+    const auto sampled = maker.pose(i).sampled;
+    ASSERT_EQ(sampled.size(), 1u);
+    EXPECT_EQ(sampled[0].first, "trajectory.speed_mps");
+    speeds.push_back(sampled[0].second);
   }
+  EXPECT_EQ(speeds[0], speeds[2]);
+  EXPECT_EQ(speeds[3], speeds[5]);
+  EXPECT_NE(speeds[0], speeds[3]);
+  EXPECT_GE(speeds[0], 0.2);
+  EXPECT_LE(speeds[0], 0.4);
 }
 
 TEST_F(Frames, NoRoomIsADataErrorWithACure) {
@@ -158,6 +222,58 @@ TEST_F(Recipes, Refusals) {
                              "random_poses: {}\n"),
               HasSubstr("whole numbers"));
   EXPECT_THAT(refusal(head + "mask: {threshold: 0}\nsplits:\n" + random_split), HasSubstr("mask.threshold"));
+}
+
+TEST_F(Recipes, TrajectoryRefusals) {
+  const auto said = [&](const std::string& keys) {
+    std::string text = head + "splits:\n" + swum_split;
+    text.replace(text.find("speed_mps: 0.5, rate_hz: 2"), 26, keys);
+    return refusal(text);
+  };
+  EXPECT_EQ(said("path: waypoints"), "");
+  EXPECT_EQ(said("waypoints: [[0, 0, -1, 0, 0, 0], [1, 0, -1, 0, 0, 0]]"), "");
+  EXPECT_THAT(said("path: spiral"), AllOf(HasSubstr("recipe.yaml:8"), HasSubstr("must be waypoints")));
+  EXPECT_THAT(said("waypoints: [[0, 0, -1, 0, 0, 0]]"), HasSubstr("needs at least two"));
+  EXPECT_THAT(said("waypoints: [[x, 0, 0, -1, 0, 0, 0], [1, 0, -1, 0, 0, 0]]"), HasSubstr("entry 0 must be"));
+  EXPECT_THAT(said("waypoints: [[x, 0, 0, -1, 0, 0], [1, 0, -1, 0, 0, 0]]"), HasSubstr("entry 0 must be"));
+  EXPECT_THAT(said("waypoints: [[0, 0, -1, 0, 0, 0], [1, 0, -1, 0, 0, .nan]]"), HasSubstr("entry 1 must be"));
+  EXPECT_THAT(said("orbit: {center: [0, 0, -2], radius_m: 2, depth_m: 2}, file: a.txt"),
+              AllOf(HasSubstr("one path too many"), HasSubstr("keep one of orbit, file")));
+  EXPECT_THAT(said("orbit: {radius_m: 2, depth_m: 2}"), HasSubstr("either 'object' or 'center'"));
+  EXPECT_THAT(said("orbit: {object: a, center: [0, 0, 0], radius_m: 2, depth_m: 2}"), HasSubstr("either"));
+  EXPECT_THAT(said("orbit: {object: a, radius: 2, depth_m: 2}"), HasSubstr("did you mean 'radius_m'"));
+  EXPECT_THAT(said("orbit: {object: a, radius_m: 0, depth_m: 2}"), HasSubstr("radius_m: must lie in"));
+  EXPECT_THAT(said("lawnmower: {depth_m: -2, spacing_m: 1}"), HasSubstr("depth_m: must lie in"));
+  EXPECT_THAT(said("lawnmower: {depth_m: 2, spacing_m: 1, area: [1, 0, 0, 1]}"), HasSubstr("x0 < x1"));
+  EXPECT_THAT(said("wall: {object: a, standoff_m: 1, depth_m: 1, side: left}"),
+              HasSubstr("one of all, east, north, west, south"));
+  EXPECT_THAT(said("attitude_noise: {roll_deg: 60}"), HasSubstr("attitude_noise.roll_deg: must lie in [0, 45]"));
+  EXPECT_THAT(said("speed_mps: {uniform: [0, 1]}"), HasSubstr("must lie in [0.001, 20]"));
+  EXPECT_THAT(said("rate_hz: 0.001, clearance: 1"), HasSubstr("did you mean 'clearance_m'"));
+  write("a.txt", "0 0 0 -2 0 0 0 1\n");
+  EXPECT_THAT(said("file: a.txt, speed_mps: 1"), HasSubstr("does not go with 'file'"));
+  std::string text = head + "splits:\n" + swum_split;
+  text.replace(text.find("frames: 5"), 9, "frames: 262200");
+  EXPECT_THAT(refusal(text), HasSubstr("longer than the 131072 s"));
+}
+
+TEST_F(Recipes, WhatAPlaceDoesNotHaveIsNamedWithTheLineOfTheRecipe) {
+  const auto said = [&](const std::string& keys) {
+    std::string text = head + "splits:\n" + swum_split;
+    text.replace(text.find("speed_mps: 0.5, rate_hz: 2"), 26, keys);
+    const FrameMaker maker(recipe(text), default_isa);
+    return error_of([&] { maker.check_trajectory(0); });
+  };
+  EXPECT_THAT(said("orbit: {object: blok, radius_m: 2, depth_m: 2}"),
+              AllOf(HasSubstr("recipe.yaml:8: splits.test.trajectory.orbit"), HasSubstr("did you mean 'block'")));
+  EXPECT_THAT(said("wall: {object: block, standoff_m: 1, depth_m: 1}"),
+              AllOf(HasSubstr("nothing between 0.75 and 1.25 m"), HasSubstr("it spans 1.50 to 2.50 m")));
+  EXPECT_THAT(said("wall: {object: wall, standoff_m: 1, depth_m: 2, side: east}"),
+              HasSubstr("lies in the navigable box on that side"));
+  EXPECT_THAT(said("lawnmower: {depth_m: 1, spacing_m: 1, area: [0, 0, 9, 1]}"), HasSubstr("within the bounds"));
+  EXPECT_THAT(said("lawnmower: {depth_m: 9, spacing_m: 1}"), HasSubstr("leaves the bounds of the scene"));
+  EXPECT_THAT(said("lawnmower: {depth_m: 1, spacing_m: 0.01, area: [0, 0, 1, 4], heading_deg: 0}, clearance_m: 10"),
+              HasSubstr("comes within 10 m"));
 }
 
 // 10^8 frames in each of 30 layouts is more than an int holds.

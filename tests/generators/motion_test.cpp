@@ -2,10 +2,8 @@
 
 #include <cmath>
 
-#include "ensonify/core/error.hpp"
 #include "ensonify/generators/drift.hpp"
 #include "ensonify/generators/random_pose.hpp"
-#include "ensonify/generators/waypoint_path.hpp"
 #include "ensonify/sim/voxelize.hpp"
 #include "support/meshes.hpp"
 #include "support/pings.hpp"
@@ -16,35 +14,6 @@ namespace {
 const Drift paper{1.1, 1200.0};
 
 RandomKey seed(std::uint64_t s) { return RandomKey::from_seed(s).child("drift"); }
-
-// 1000 seeds: mean radius 1.1 m; of a Rayleigh radius the standard deviation is 0.523 of the mean, so 1.65 % of
-// standard error: 5 % is 3 of them. Axes: equal variance (standard error sqrt(2 / n) = 4.5 %), uncorrelated (1 / sqrt
-// n).
-TEST(Drift, MeanRadiusAfterTwentyMinutes) {
-  double radius = 0, xx = 0, yy = 0, xy = 0;
-  for (std::uint64_t s = 0; s < 1000; ++s) {
-    const Eigen::Vector2d e = drift_m(paper, seed(s), 1200.0);
-    radius += e.norm() / 1000;
-    xx += e.x() * e.x() / 1000;
-    yy += e.y() * e.y() / 1000;
-    xy += e.x() * e.y() / 1000;
-  }
-  std::printf("mean radius %.3f m\n", radius);
-  EXPECT_NEAR(radius, 1.1, 0.055);
-  EXPECT_NEAR(xx / yy, 1.0, 4 * 0.045 * std::sqrt(2.0));
-  EXPECT_LT(std::abs(xy) / std::sqrt(xx * yy), 4 / std::sqrt(1000.0));
-}
-
-// Half of the variance is a bias, growing as t^2, half a walk, growing as t: at t = T / 4 it is sigma^2 (1/16 + 1/4) /
-// 2 a share of 0.15625.
-TEST(Drift, VarianceGrowsWithTime) {
-  double quarter = 0, whole = 0;
-  for (std::uint64_t s = 0; s < 2000; ++s) {
-    quarter += drift_m(paper, seed(s), 300.0).squaredNorm();
-    whole += drift_m(paper, seed(s), 1200.0).squaredNorm();
-  }
-  EXPECT_NEAR(quarter / whole, 0.15625, 0.02);
-}
 
 TEST(Drift, StartsAtZeroAndIsContinuous) {
   for (std::uint64_t s = 0; s < 20; ++s) {
@@ -71,40 +40,6 @@ TEST(Drift, AnyTimeAlone) {
   EXPECT_EQ(estimate.linear(), pose.linear());
   EXPECT_EQ(estimate.translation().z(), -3.0);
   EXPECT_TRUE((estimate.translation() - pose.translation()).head<2>().isApprox(late_first, 1e-12));
-}
-
-std::vector<Pose> corner() {
-  return {pose_from_xyz_rpy({0, 0, -1}, 0, 0, 0), pose_from_xyz_rpy({4, 0, -1}, 0, 0, radians(90)),
-          pose_from_xyz_rpy({4, 3, -1}, 0, 0, radians(170))};
-}
-
-// Length 4 + 3; at s the pose has gone s; back on the same way, period 14.
-TEST(WaypointPath, SpeedAndPingPong) {
-  const WaypointPath path(corner());
-  EXPECT_DOUBLE_EQ(path.length_m(), 7.0);
-  for (double s = 0; s < 28.0; s += 0.05) {
-    const Pose here = path.at(s);
-    const Pose next = path.at(s + 0.001);
-    EXPECT_LE((next.translation() - here.translation()).norm(), 0.001 + 1e-12);
-    EXPECT_TRUE(here.isApprox(path.at(s + 14.0), 1e-9)) << s;
-    EXPECT_TRUE(here.isApprox(path.at(std::abs(14.0 - std::fmod(s, 14.0))), 1e-9)) << s;
-    EXPECT_NEAR(here.linear().determinant(), 1.0, 1e-12);
-  }
-  EXPECT_TRUE(path.at(5.5).translation().isApprox(Vec3(4, 1.5, -1), 1e-12));
-  EXPECT_NEAR(roll_pitch_yaw(path.at(2.0))[2], radians(45.0), 1e-12);
-  EXPECT_NEAR(roll_pitch_yaw(path.at(5.5))[2], radians(130.0), 1e-12);
-  EXPECT_NEAR((path.at(3.0).translation() - path.at(1.0).translation()).norm(), 2.0, 1e-12);
-}
-
-TEST(WaypointPath, NeedsAWay) {
-  EXPECT_THROW(WaypointPath({}), ConfigError);
-  EXPECT_THROW(WaypointPath({Pose::Identity()}), ConfigError);
-  EXPECT_THROW(WaypointPath({Pose::Identity(), Pose::Identity()}), ConfigError);
-  auto stop = corner();
-  stop.insert(stop.begin() + 1, stop[1]);  // a stop on the way is no division by zero
-  stop.insert(stop.begin() + 1, stop[0]);
-  const WaypointPath path(stop);
-  for (double s = 0; s < 14.0; s += 0.1) ASSERT_TRUE(path.at(s).matrix().allFinite()) << s;
 }
 
 /// A box of 1 m in the middle of 6 x 6 x 4 m of water over a floor.

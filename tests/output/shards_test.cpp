@@ -106,8 +106,67 @@ TEST_F(Tum, Text) {
   write_tum(folder / "a.txt", {{0.0, Pose::Identity()}, {0.5, pose}});
   EXPECT_EQ(read_text(folder / "a.txt"),
             "# timestamp tx ty tz qx qy qz qw (T_world_sonar, metres, ENU)\n"
-            "0.000000 0.000000 0.000000 0.000000 0.000000000 0.000000000 0.000000000 1.000000000\n"
-            "0.500000 1.500000 -2.250000 -3.000000 0.000000000 0.000000000 0.707106781 0.707106781\n");
+            "0.000000000 0.000000000 0.000000000 0.000000000 0.000000000000 0.000000000000 0.000000000000 "
+            "1.000000000000\n"
+            "0.500000000 1.500000000 -2.250000000 -3.000000000 0.000000000000 0.000000000000 0.707106781187 "
+            "0.707106781187\n");
+}
+
+TEST_F(Tum, RoundTrip) {
+  std::vector<StampedPose> poses;
+  for (int i = 0; i < 50; ++i) {
+    poses.push_back({i / 3.0, pose_from_xyz_rpy({0.1 * i, -7.0 / (i + 1), -3}, 0.1 * i, 0.02 * i, 3.0 - 0.7 * i)});
+  }
+  write_tum(folder / "a.txt", poses);
+  const auto back = read_tum(folder / "a.txt");
+  ASSERT_EQ(back.size(), poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    EXPECT_NEAR(back[i].time_s, poses[i].time_s, 1e-9);
+    EXPECT_LT((back[i].T_world_sonar.matrix() - poses[i].T_world_sonar.matrix()).cwiseAbs().maxCoeff(), 1e-9);
+  }
+}
+
+TEST_F(Tum, TakesWhatOthersWrite) {
+  write_file(folder / "a.txt",
+             "# made elsewhere\r\n\r\n  1.7e9\t1 2 -3 0 0 0.995 0.0998\r\n1700000000.5 1 2 -3 0 0 0 -1");
+  const auto poses = read_tum(folder / "a.txt");
+  ASSERT_EQ(poses.size(), 2u);
+  EXPECT_EQ(poses[1].time_s - poses[0].time_s, 0.5);
+  EXPECT_NEAR(poses[0].T_world_sonar.linear().determinant(), 1.0, 1e-12);
+  EXPECT_TRUE(poses[1].T_world_sonar.linear().isIdentity(1e-12));
+}
+
+TEST_F(Tum, RefusesWithFileAndLine) {
+  const std::string good = "0 0 0 -1 0 0 0 1\n";
+  const std::vector<std::pair<std::string, std::string>> broken{
+      {"", "holds no pose"},
+      {"# only words\n\n", "holds no pose"},
+      {good + "1 0 0 -1 0 0 0\n", "a.txt:2: has 7 numbers"},
+      {good + "1 0 0 -1 0 0 0 1 5\n", "a.txt:2: has more than the 8"},
+      {good + "# c\n1 0 x -1 0 0 0 1\n", "a.txt:3: 'x' is no finite number"},
+      {good + "1,0,0,-1,0,0,0,1\n", "a.txt:2: '1,0,0,-1,0,0,0,1' is no finite"},
+      {good + "1 nan 0 -1 0 0 0 1\n", "a.txt:2: 'nan' is no finite"},
+      {good + "inf 0 0 -1 0 0 0 1\n", "'inf' is no finite"},
+      {good + "1 1e999 0 -1 0 0 0 1\n", "'1e999' is no finite"},
+      {good + "1 1e7 0 -1 0 0 0 1\n", "a.txt:2: the position lies"},
+      {good + "1 0 0 -1 0 0 0 0\n", "a.txt:2: the quaternion (qx qy qz qw) has norm 0"},
+      {good + "1 0 0 -1 0 0 0 2\n", "norm 2; it must be 1"},
+      {good + "0 0 0 -1 0 0 0 1\n", "a.txt:2: time 0 s does not come after 0 s"},
+      {"1e300 0 0 -1 0 0 0 1\n", "a.txt:1: time"},
+      {good + std::string("\0\x01\xff", 3) + "\n", "a.txt:2: '?"},
+      {std::string(100'000, '7'), "a.txt:1: '77777777777777777777777777777777' is no finite"}};
+  for (const auto& [text, fragment] : broken) {
+    write_file(folder / "a.txt", text);
+    try {
+      read_tum(folder / "a.txt");
+      ADD_FAILURE() << "accepted: " << text.substr(0, 60);
+    } catch (const DataError& e) {
+      EXPECT_NE(std::string(e.what()).find(fragment), std::string::npos) << e.what();
+    }
+  }
+  EXPECT_THROW(read_tum(folder / "missing.txt"), DataError);
+  fs::resize_file(folder / "a.txt", std::size_t{300} << 20);  // sparse
+  EXPECT_THROW(read_tum(folder / "a.txt"), DataError);
 }
 
 // A point at range r and azimuth theta is drawn r cos(theta) above the lower edge and r sin(theta) left of the middle,

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "ensonify/core/error.hpp"
 #include "ensonify/scenes/mesh_measure.hpp"
 #include "ensonify/scenes/scene.hpp"
@@ -32,6 +34,13 @@ struct Fault {
 
 void PrintTo(const Fault& fault, std::ostream* out) { *out << fault.object; }
 
+/// "[x, y rest], ..." of a zigzag that moves on along y.
+std::string many_points(int count, const std::string& rest = "") {
+  std::ostringstream list;
+  for (int i = 0; i < count; ++i) list << "[" << 1 + i % 2 << ", " << i << rest << "], ";
+  return list.str();
+}
+
 class ShapeFault : public ::testing::TestWithParam<Fault> {};
 
 TEST_P(ShapeFault, IsRefusedWithItsPlaceAndRule) {
@@ -57,6 +66,11 @@ INSTANTIATE_TEST_SUITE_P(
         Fault{"shape: lathe, profile: [[0.5, 0], [0, 1], [0.5, 2]]", "radii"},
         Fault{"shape: lathe, ring: true, profile: [[0, 0], [1, 0], [1, 1]]", "a ring's radii"},
         Fault{"shape: lathe, profile: [[0, 0], [1, 2], [0.2, 0.1], [0, 1]]", "crosses"},
+        Fault{"shape: lathe, segments: 1024, profile: [" + many_points(999) + "[0, 2000]]", "gives 2.05e+06 triangles"},
+        Fault{"shape: cable, radius_m: 0.1, length_m: 3, pieces: 9999, segments: 200", "gives 4e+06 triangles"},
+        Fault{"shape: pipe, radius_m: 0.01, segments: 256, wall_m: 0.005, points: [[-1, 0, 0], " +
+                  many_points(400, ", 0") + "[0, 9000, 0]]",
+              "triangles"},
         Fault{"shape: torus, major_radius_m: 1, tube_radius_m: 1", "below major_radius_m"},
         Fault{"shape: torus, major_radius_m: 1, tube_radius_m: 0.1, segments: 100000", "must lie in"},
         Fault{"shape: pipe, radius_m: 0.5, points: [[0, 0, 0], [1, 0, 0], [1, 1, 0]]", "no room at point 1"},

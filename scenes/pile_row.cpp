@@ -4,12 +4,34 @@
 #include <numbers>
 
 #include "ensonify/scenes/basic_shapes.hpp"
+#include "ensonify/scenes/loft.hpp"
 
 namespace ensonify {
+namespace {
+
+/// As wide as deep, from -1 to 1, one long.
+TriangleMesh make_h_beam() {
+  constexpr double flange = 0.87, web = 0.08;  // inner face of the flange, half the web
+  return extrude({{-1, -1},
+                  {-flange, -1},
+                  {-flange, -web},
+                  {flange, -web},
+                  {flange, -1},
+                  {1, -1},
+                  {1, 1},
+                  {flange, 1},
+                  {flange, web},
+                  {-flange, web},
+                  {-flange, 1},
+                  {-1, 1}},
+                 -0.5, 0.5);
+}
+
+}  // namespace
 
 Assembly build_pile_row(const PileRow& row, RandomKey key) {
   Assembly result;
-  result.meshes.push_back(make_cylinder(1.0, 1.0));
+  result.meshes.push_back(row.h_beam ? make_h_beam() : make_cylinder(1.0, 1.0));
   for (int i = 0; i < row.piles; ++i) {
     RandomSequence random(key.child(static_cast<std::uint64_t>(i)));
     const double radius_m = sample(row.radius_m, random);

@@ -53,12 +53,12 @@ Pose read_pose(Reader& reader, std::string_view key, RandomSequence& random) {
 }
 
 std::vector<std::vector<double>> read_points(Reader& reader, std::string_view key, std::size_t dimensions,
-                                             std::size_t low, std::size_t high) {
+                                             std::size_t low, std::size_t high, std::string_view form) {
   constexpr double far_m = 1e4;
   const YAML::Node list = reader.node(key);
   const auto refuse = [&](const std::string& why) { reader.fail(key, why); };
   if (!list.IsSequence() || list.size() < low || list.size() > high) {
-    refuse(fmt::format("must be a list of {} to {} points of {} numbers", low, high, dimensions));
+    refuse(fmt::format("must be a list of {} to {} entries {}", low, high, form));
   }
   std::vector<std::vector<double>> points;
   for (const auto& entry : list) {
@@ -69,8 +69,7 @@ std::vector<std::vector<double>> read_points(Reader& reader, std::string_view ke
       point.push_back(number);
     }
     if (!entry.IsSequence() || point.size() != dimensions || entry.size() != dimensions) {
-      refuse(fmt::format("point {} must be a list of {} numbers between -{:g} and {:g}", points.size(), dimensions,
-                         far_m, far_m));
+      refuse(fmt::format("entry {} must be {}, numbers between -{:g} and {:g}", points.size(), form, far_m, far_m));
     }
     points.push_back(std::move(point));
   }
@@ -79,7 +78,7 @@ std::vector<std::vector<double>> read_points(Reader& reader, std::string_view ke
 
 std::vector<Pose> read_waypoints(Reader& reader, std::string_view key) {
   std::vector<Pose> poses;
-  for (const auto& v : read_points(reader, key, 6, 1, 10'000)) {
+  for (const auto& v : read_points(reader, key, 6, 1, 10'000, "[x, y, z, roll, pitch, yaw] in metres and degrees")) {
     poses.push_back(pose_from_xyz_rpy({v[0], v[1], v[2]}, radians(v[3]), radians(v[4]), radians(v[5])));
   }
   return poses;

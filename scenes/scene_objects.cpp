@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "ensonify/scenes/growth.hpp"
 #include "ensonify/scenes/mesh_measure.hpp"
 #include "ensonify/scenes/scene_shapes.hpp"
 
@@ -85,20 +86,47 @@ void rest_on_seabed(const SceneDraft& draft, Placed& placed) {
   placed.T_world_object.translation().z() += draft.seabed.at(origin.x(), origin.y()) + height_m - lowest_m;
 }
 
+void add_parts(SceneDraft& draft, const Reader& reader, Assembly assembly, Placed& placed) {
+  const int first = static_cast<int>(draft.scene.meshes.size());
+  for (TriangleMesh& mesh : assembly.meshes) add_mesh(draft, reader, std::move(mesh));
+  for (const Part& part : assembly.parts) placed.parts.push_back({first + part.mesh, part.T_object_part});
+}
+
+/// Overgrows the object where it has the key `growth`.
+Assembly grown(Reader& reader, RandomSequence& random, RandomKey key, const Assembly& assembly) {
+  if (!reader.has("growth")) return assembly;
+  Reader child = reader.child("growth");
+  const FieldSampler field{child, random};
+  Growth growth;
+  growth.thickness_m = field.number("thickness_m", {0, 10});
+  growth.patch_m = field.number_or("patch_m", std::max(0.01, 4 * growth.thickness_m), {5e-3, 100});
+  growth.coverage = field.number_or("coverage", 1, {0, 1});
+  child.finish();
+  try {
+    return overgrow(assembly, growth, key.child("growth"));
+  } catch (const GrowthTooFine& fault) {
+    child.fail("patch_m", fault.what());
+  }
+}
+
 Placed place_copy(SceneDraft& draft, Reader& reader, RandomKey key, int copy) {
   RandomSequence random(key);
   Placed placed;
   placed.T_world_object = read_place(reader, random, copy);
   if (reader.has("mesh")) {
     if (reader.has("shape")) reader.fail("shape", "an object has either a shape or a mesh");
-    placed.parts.push_back({import_once(draft, reader), Eigen::Affine3d::Identity()});
+    const int mesh = import_once(draft, reader);
+    if (reader.has("growth")) {
+      add_parts(draft, reader,
+                grown(reader, random, key, assembly_of(draft.scene.meshes[static_cast<std::size_t>(mesh)])), placed);
+    } else {
+      placed.parts.push_back({mesh, Eigen::Affine3d::Identity()});
+    }
   } else {
     const std::string shape = reader.choice("shape", shape_names());
     const ScatterGround ground = ground_seen_from(draft, placed.T_world_object);
-    Assembly assembly = build_shape(shape, FieldSampler{reader, random}, key, ground);
-    const int first = static_cast<int>(draft.scene.meshes.size());
-    for (TriangleMesh& mesh : assembly.meshes) add_mesh(draft, reader, std::move(mesh));
-    for (const Part& part : assembly.parts) placed.parts.push_back({first + part.mesh, part.T_object_part});
+    const Assembly assembly = build_shape(shape, FieldSampler{reader, random}, key, ground);
+    add_parts(draft, reader, grown(reader, random, key, assembly), placed);
   }
   if (reader.boolean_or("on_seabed", false)) {
     if (draft.seabed.empty()) reader.fail("on_seabed", "needs a seabed in the scene");

@@ -19,6 +19,13 @@ const ShapeTable& builders() {
 
 }  // namespace
 
+void ShapeRequest::check_triangles(std::string_view name, double triangles) const {
+  constexpr double most = 1e6;
+  if (triangles > most) {
+    field.reader.fail(name, fmt::format("gives {:.3g} triangles, more than {:.3g}", triangles, most));
+  }
+}
+
 const std::vector<std::string>& shape_names() {
   static const std::vector<std::string> names = [] {
     std::vector<std::string> result;

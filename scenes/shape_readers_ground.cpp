@@ -1,3 +1,9 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "ensonify/scenes/debris.hpp"
 #include "ensonify/scenes/heightfield.hpp"
 #include "ensonify/scenes/rubble_mound.hpp"
 #include "ensonify/scenes/scene_shapes.hpp"
@@ -54,6 +60,31 @@ Assembly build_boulder_scatter(const ShapeRequest& r) {
   return scatter_boulders(scatter, r.ground, r.key);
 }
 
+std::vector<DebrisKind> read_debris_kinds(Reader& reader) {
+  const std::vector<std::string> names{"box", "plank", "tube", "tyre", "slab", "boulder"};
+  std::vector<DebrisKind> kinds;
+  for (const std::string& name : reader.has("kinds") ? reader.texts("kinds") : names) {
+    const auto known = std::find(names.begin(), names.end(), name);
+    if (known == names.end()) reader.fail("kinds", fmt::format("'{}' is none of {}", name, fmt::join(names, ", ")));
+    kinds.push_back(static_cast<DebrisKind>(known - names.begin()));
+  }
+  if (kinds.empty()) reader.fail("kinds", "must name one at least");
+  return kinds;
+}
+
+Assembly build_debris_scatter(const ShapeRequest& r) {
+  DebrisScatter scatter;
+  Reader& reader = r.field.reader;
+  scatter.pieces = r.field.count("pieces", 0, 5000);
+  read_area(r, scatter.where);
+  scatter.where.path_clearance_m = r.field.number_or("path_clearance_m", scatter.where.path_clearance_m, not_negative);
+  scatter.kinds = read_debris_kinds(reader);
+  if (reader.has("size_m")) scatter.size_m = read_distribution(reader, "size_m", {1e-2, 100});
+  scatter.burial = r.field.number_or("burial", scatter.burial, unit_interval);
+  scatter.tilt_rad = r.field.angle_or("tilt_deg", 12, {0, 90});
+  return scatter_debris(scatter, r.ground, r.key);
+}
+
 Assembly build_rubble(const ShapeRequest& r) {
   RubbleMound mound;
   mound.length_m = r.length("length_m");
@@ -72,6 +103,7 @@ ShapeTable ground_shapes() {
           {"fractal", build_fractal},
           {"rippled", build_rippled},
           {"boulder_scatter", build_boulder_scatter},
+          {"debris_scatter", build_debris_scatter},
           {"rubble_mound", build_rubble}};
 }
 

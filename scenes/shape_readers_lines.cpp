@@ -35,7 +35,7 @@ std::vector<Vec3> read_pipe_path(const ShapeRequest& r, double radius_m) {
   if (reader.has("length_m")) reader.fail("length_m", "give either length_m or points");
   const double bend_m = r.field.number_or("bend_radius_m", 3 * radius_m, {1.05 * radius_m, length_limits_m.high});
   std::vector<Vec3> points;
-  for (const auto& p : read_points(reader, "points", 3, 2, 500)) points.emplace_back(p[0], p[1], p[2]);
+  for (const auto& p : read_points(reader, "points", 3, 2, 500, "[x, y, z]")) points.emplace_back(p[0], p[1], p[2]);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     if ((points[i + 1] - points[i]).norm() < length_limits_m.low) {
       reader.fail("points", fmt::format("points {} and {} coincide", i, i + 1));
@@ -63,6 +63,8 @@ Assembly read_pipe(const ShapeRequest& r) {
   pipe.flange_thickness_m = r.length_or("flange_thickness_m", 0.25 * pipe.radius_m);
   pipe.bolts = r.field.count_or("bolts", 0, 0, 64);
   if (pipe.flange_radius_m <= pipe.radius_m) reader.fail("flange_radius_m", "must be above radius_m");
+  r.check_triangles("segments",
+                    (pipe.wall_m > 0 ? 4.0 : 2.0) * static_cast<double>(pipe.path_m.size()) * pipe.segments);
   const double length_m = path_length_m(pipe.path_m);
   if (pipe.flange_spacing_m > 0) {
     if (pipe.flange_thickness_m > 0.5 * length_m) reader.fail("flange_thickness_m", "must be at most half the length");
@@ -74,8 +76,9 @@ Assembly read_pipe(const ShapeRequest& r) {
 Assembly read_cable(const ShapeRequest& r) {
   const double radius_m = r.length("radius_m");
   const HangingLine line = read_line(r);
-  const int pieces = r.field.count_or("pieces", 64, 1, 2000);
-  return assembly_of(make_bar(line.points_m(pieces), radius_m, r.field.count_or("segments", 16, 3, 256)));
+  const int pieces = r.field.count_or("pieces", 64, 1, 10000), segments = r.field.count_or("segments", 16, 3, 256);
+  r.check_triangles("pieces", 2.0 * (pieces + 1) * segments);
+  return assembly_of(make_bar(line.points_m(pieces), radius_m, segments));
 }
 
 Assembly read_chain(const ShapeRequest& r) {

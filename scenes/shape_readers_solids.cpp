@@ -44,7 +44,8 @@ constexpr std::size_t max_profile_points = 1000;
 
 Polygon read_profile(Reader& reader, std::size_t fewest) {
   Polygon profile;
-  for (const auto& p : read_points(reader, "profile", 2, fewest, max_profile_points)) profile.emplace_back(p[0], p[1]);
+  for (const auto& p : read_points(reader, "profile", 2, fewest, max_profile_points, "a pair of coordinates"))
+    profile.emplace_back(p[0], p[1]);
   return profile;
 }
 
@@ -58,7 +59,7 @@ Assembly build_extrusion(const ShapeRequest& r) {
   const Polygon profile = read_profile(reader, 3);
   refuse_crossing(reader, profile);
   const double height_m = r.length("height_m");
-  const std::string axis = reader.has("axis") ? reader.choice("axis", {"x", "y", "z"}) : "z";
+  const std::string axis = r.choice_or_first("axis", {"z", "x", "y"});
   TriangleMesh mesh = extrude(profile, -0.5 * height_m, 0.5 * height_m);
   for (Eigen::Vector3f& v : mesh.vertices_m) {
     if (axis == "x") v = Eigen::Vector3f(v.z(), v.x(), v.y());
@@ -82,6 +83,7 @@ Assembly build_lathe(const ShapeRequest& r) {
   if (!ring && outline.front().x() > 0) outline.insert(outline.begin(), {0, profile.front().y()});
   if (!ring && outline.back().x() > 0) outline.emplace_back(0, profile.back().y());
   refuse_crossing(reader, outline);
+  r.check_triangles("segments", 2.0 * static_cast<double>(outline.size()) * segments);
   return assembly_of(ring ? turn_ring_profile(profile, segments) : turn_profile(profile, segments));
 }
 

@@ -31,6 +31,7 @@ Assembly read_pile_row(const ShapeRequest& r) {
   row.radius_m = read_distribution(reader, "radius_m", length_limits_m);
   row.tilt_deg = read_distribution_or(reader, "tilt_deg", 0, {-45, 45});
   row.offset_m = read_distribution_or(reader, "offset_m", 0, {-100, 100});
+  row.h_beam = r.choice_or_first("profile", {"tube", "h_beam"}) == "h_beam";
   return build_pile_row(row, r.key);
 }
 
@@ -54,7 +55,7 @@ Assembly read_sheet_pile_wall(const ShapeRequest& r) {
   wall.depth_m = r.length_or("depth_m", wall.depth_m);
   wall.pitch_m = r.length_or("pitch_m", wall.pitch_m);
   wall.thickness_m = r.length_or("thickness_m", wall.thickness_m);
-  wall.z_profile = reader.has("profile") && reader.choice("profile", {"u", "z"}) == "z";
+  wall.z_profile = r.choice_or_first("profile", {"u", "z"}) == "z";
   wall.offset_m = read_distribution_or(reader, "offset_m", 0, {-1, 1});
   wall.cap_height_m = r.field.number_or("cap_height_m", 0, {0, 100});
   wall.cap_width_m = r.length_or("cap_width_m", 1.6 * wall.depth_m);
@@ -73,8 +74,7 @@ Assembly read_truss(const ShapeRequest& r) {
   truss.height_m = r.length_or("height_m", truss.width_m);
   const double square_bays = std::clamp(std::round(truss.length_m / truss.width_m), 1.0, 500.0);
   truss.bays = r.field.count_or("bays", static_cast<int>(square_bays), 1, 500);
-  Reader& reader = r.field.reader;
-  truss.triangular = reader.has("section") && reader.choice("section", {"box", "triangle"}) == "triangle";
+  truss.triangular = r.choice_or_first("section", {"box", "triangle"}) == "triangle";
   truss.chord_radius_m = r.length_or("chord_radius_m", truss.chord_radius_m);
   truss.brace_radius_m = r.length_or("brace_radius_m", 0.5 * truss.chord_radius_m);
   return assembly_of_members(truss_members(truss));
@@ -87,8 +87,7 @@ Assembly read_jacket(const ShapeRequest& r) {
   jacket.top_width_m = r.length_or("top_width_m", 0.5 * jacket.base_width_m);
   jacket.leg_radius_m = r.length_or("leg_radius_m", 0.02 * jacket.height_m);
   jacket.levels = r.field.count_or("levels", jacket.levels, 1, 50);
-  Reader& reader = r.field.reader;
-  jacket.k_braces = reader.has("braces") && reader.choice("braces", {"x", "k"}) == "k";
+  jacket.k_braces = r.choice_or_first("braces", {"x", "k"}) == "k";
   jacket.brace_radius_m = r.length_or("brace_radius_m", 0.5 * jacket.leg_radius_m);
   jacket.pile_radius_m = r.field.number_or("pile_radius_m", 0, {0, 100});
   jacket.pile_length_m = r.length_or("pile_length_m", 0.12 * jacket.height_m);

@@ -24,7 +24,7 @@ Assembly read_ship(const ShapeRequest& r) {
   ship.bulb = reader.boolean_or("bulb", true);
   ship.hatches = r.field.count_or("hatches", 4, 0, 20);
   ship.masts = r.field.count_or("masts", 2, 0, 20);
-  const std::string house = reader.has("house") ? reader.choice("house", {"aft", "middle", "none"}) : "aft";
+  const std::string house = r.choice_or_first("house", {"aft", "middle", "none"});
   ship.house = house == "aft" ? Ship::House::aft : house == "middle" ? Ship::House::middle : Ship::House::none;
   ship.damage = r.field.number_or("damage", 0, unit_interval);
   if (ship.beam_m > 0.5 * ship.length_m) reader.fail("beam_m", "must be at most half of length_m");

@@ -23,6 +23,12 @@ struct ShapeRequest {
   double length_or(std::string_view name, double fallback) const {
     return field.number_or(name, fallback, length_limits_m);
   }
+  /// One of `choices`, the first where the file says nothing.
+  std::string choice_or_first(std::string_view name, const std::vector<std::string>& choices) const {
+    return field.reader.has(name) ? field.reader.choice(name, choices) : choices.front();
+  }
+  /// Refuses at `name` what would take more than a million triangles.
+  void check_triangles(std::string_view name, double triangles) const;
 };
 
 /// Reads the parameters of one shape and builds it; throws ConfigError at the parameter at fault.

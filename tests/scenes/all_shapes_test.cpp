@@ -44,6 +44,7 @@ const std::map<std::string, Sample>& samples() {
       {"pile_row",
        {"piles: 3, spacing_m: 2, length_m: 5, radius_m: 0.2, tilt_deg: 2", {-0.5, -0.5, -5.1}, {4.5, 0.5, 0.1}, true}},
       {"boulder_scatter", {"boulders: 9, area_m: [-4, -4, 4, 4], radius_m: 0.3", {-5, -5, -1}, {5, 5, 1}, true}},
+      {"debris_scatter", {"pieces: 40, area_m: [-4, -4, 4, 4]", {-5, -5, -1}, {5, 5, 1.3}, true}},
       {"rubble_mound",
        {"length_m: 4, crest_width_m: 1, height_m: 2, radius_m: 0.3, rocks: 9", {-3, -6, -3}, {3, 6, 1}, true}},
       {"sheet_pile_wall",

@@ -140,6 +140,14 @@ TEST(PileRow, PilesHangFromTheRowAndShareOneMesh) {
   }
 }
 
+TEST(PileRow, HBeamsAreAsWideAsRoundPiles) {
+  const Assembly piles =
+      build_pile_row({.length_m = 6, .h_beam = true, .radius_m = Constant{0.2}}, RandomKey::from_seed(1));
+  expect_closed(piles.meshes[0], 2 * 2 * 0.13 + 1.74 * 0.16, 1e-5);
+  const Eigen::AlignedBox3d box = bounding_box_m(piles.meshes[0], piles.parts[0].T_object_part);
+  EXPECT_LT((box.sizes() - Vec3(0.4, 0.4, 6)).norm(), 1e-6);
+}
+
 TEST(BoulderScatter, StonesLieApartAndClearOfThePath) {
   BoulderScatter scatter;
   scatter.boulders = 60;

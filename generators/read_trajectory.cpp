@@ -69,7 +69,7 @@ WallFollow read_wall(Reader wall) {
 
 RecordedPath read_recorded(const Reader& trajectory, const std::string& file) {
   const std::filesystem::path path = trajectory.folder() / file;
-  return {path, read_tum(path)};
+  return {path, std::make_shared<const std::vector<StampedPose>>(read_tum(path))};
 }
 
 PathSpec read_path(Reader& trajectory, std::string& where) {

@@ -67,11 +67,7 @@ Way way_of(const TrajectoryPoses& spec, const Scene& scene) {
     Way operator()(const Lawnmower& mow) const { return survey_way(mow, survey_area(mow, scene), rounding_m); }
     Way operator()(const Orbit& orbit) const { return circle_of(orbit, scene, rounding_m); }
     Way operator()(const WallFollow& wall) const { return wall_way(wall, scene, rounding_m); }
-    Way operator()(const RecordedPath& recorded) const {
-      RecordedPath from_zero = recorded;
-      for (StampedPose& pose : from_zero.poses) pose.time_s -= recorded.poses.front().time_s;
-      return from_zero;
-    }
+    Way operator()(const RecordedPath& recorded) const { return recorded; }
   } visitor{scene, spec.rounding_m};
   try {
     return std::visit(visitor, spec.path);
@@ -80,12 +76,19 @@ Way way_of(const TrajectoryPoses& spec, const Scene& scene) {
   }
 }
 
-/// Index of the pose that ends the piece of the record in which `time_s` lies.
-std::size_t piece_end(const RecordedPath& recorded, double time_s) {
-  const auto& poses = recorded.poses;
+/// The piece of a record in which a time since its first pose lies, and when it begins and ends by the same clock.
+struct Piece {
+  const Pose& from;
+  const Pose& to;
+  double begin_s, end_s;
+};
+
+Piece piece_of(const std::vector<StampedPose>& poses, double time_s) {
+  const double start_s = poses.front().time_s;
   const auto end = std::upper_bound(poses.begin() + 1, poses.end() - 1, time_s,
-                                    [](double t, const StampedPose& pose) { return t < pose.time_s; });
-  return static_cast<std::size_t>(end - poses.begin());
+                                    [&](double t, const StampedPose& pose) { return t < pose.time_s - start_s; });
+  const StampedPose& a = *(end - 1);
+  return {a.T_world_sonar, end->T_world_sonar, a.time_s - start_s, end->time_s - start_s};
 }
 
 Pose pose_on(const SmoothedWay& way, double way_m) { return pose_of(way.at(way_m)); }
@@ -99,16 +102,13 @@ Pose pose_on(const Circle& circle, double way_m) {
 }
 
 Pose pose_at(const RecordedPath& recorded, double time_s) {
-  if (recorded.poses.size() == 1) return recorded.poses.front().T_world_sonar;
-  const std::size_t end = piece_end(recorded, time_s);
-  const StampedPose& a = recorded.poses[end - 1];
-  const StampedPose& b = recorded.poses[end];
-  const double share = std::clamp((time_s - a.time_s) / (b.time_s - a.time_s), 0.0, 1.0);
+  if (recorded.poses->size() == 1) return recorded.poses->front().T_world_sonar;
+  const auto [from, to, begin_s, end_s] = piece_of(*recorded.poses, time_s);
+  const double share = std::clamp((time_s - begin_s) / (end_s - begin_s), 0.0, 1.0);
   Pose pose = Pose::Identity();
-  pose.linear() = Eigen::Quaterniond(a.T_world_sonar.rotation())
-                      .slerp(share, Eigen::Quaterniond(b.T_world_sonar.rotation()))
-                      .toRotationMatrix();
-  pose.translation() = (1.0 - share) * a.T_world_sonar.translation() + share * b.T_world_sonar.translation();
+  pose.linear() =
+      Eigen::Quaterniond(from.rotation()).slerp(share, Eigen::Quaterniond(to.rotation())).toRotationMatrix();
+  pose.translation() = (1.0 - share) * from.translation() + share * to.translation();
   return pose;
 }
 
@@ -137,7 +137,7 @@ Pose Trajectory::at(double time_s) const {
 
 double Trajectory::lasts_s() const {
   const auto* recorded = std::get_if<RecordedPath>(&way_);
-  return recorded ? recorded->poses.back().time_s : never;
+  return recorded ? recorded->poses->back().time_s - recorded->poses->front().time_s : never;
 }
 
 double Trajectory::repeats_s() const {
@@ -148,14 +148,13 @@ double Trajectory::repeats_s() const {
 
 double Trajectory::next_look_s(double time_s, double step_m) const {
   if (speed_mps_) return time_s + step_m / *speed_mps_;
-  const auto& recorded = std::get<RecordedPath>(way_);
-  if (recorded.poses.size() == 1) return never;
-  const std::size_t end = piece_end(recorded, time_s);
-  const StampedPose& a = recorded.poses[end - 1];
-  const StampedPose& b = recorded.poses[end];
-  const double way_m = (b.T_world_sonar.translation() - a.T_world_sonar.translation()).norm();
-  const double next_s = way_m > 0.0 ? time_s + step_m / way_m * (b.time_s - a.time_s) : never;
-  return b.time_s > time_s ? std::min(next_s, b.time_s) : never;
+  const auto& poses = *std::get<RecordedPath>(way_).poses;
+  if (poses.size() == 1) return never;
+  const auto [from, to, begin_s, end_s] = piece_of(poses, time_s);
+  const double way_m = (to.translation() - from.translation()).norm();
+  const double next_s = way_m > 0.0 ? time_s + step_m / way_m * (end_s - begin_s) : never;
+  if (end_s <= time_s) return never;
+  return std::max(std::min(next_s, end_s), std::nextafter(time_s, never));
 }
 
 Motion motion_of(const Trajectory& trajectory, double until_s) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <variant>
@@ -54,10 +55,11 @@ struct WallFollow {
   bool clockwise = false;  ///< about the object, seen from above
 };
 
-/// Poses of a TUM file at its times, the first being the start; between them straight lines and slerp.
+/// Poses of a TUM file at its times, the first being the start; between them straight lines and slerp. At least one
+/// pose, times ascending. Shared, because recipes are copied and a file may hold a million poses.
 struct RecordedPath {
   std::filesystem::path file;
-  std::vector<StampedPose> poses;
+  std::shared_ptr<const std::vector<StampedPose>> poses;
 };
 
 using PathSpec = std::variant<SceneWaypoints, OwnWaypoints, Lawnmower, Orbit, WallFollow, RecordedPath>;

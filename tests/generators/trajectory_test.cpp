@@ -41,6 +41,10 @@ Trajectory swim(PathSpec path, double rounding_m = 1.0) {
   return {spec, harbour(), RandomKey{}};
 }
 
+RecordedPath recorded(std::vector<StampedPose> poses) {
+  return {"a.txt", std::make_shared<const std::vector<StampedPose>>(std::move(poses))};
+}
+
 double yaw_of(const Pose& pose) { return roll_pitch_yaw(pose)[2]; }
 
 TEST(Orbit, KeepsItsRadiusDepthAndSpeedAndLooksAtTheCentre) {
@@ -219,7 +223,7 @@ TEST(ObjectOutline, IsTheHullOfTheSectionAtItsHeight) {
 TEST(RecordedPath, GivesItsPosesAtItsTimes) {
   const Pose a = pose_from_xyz_rpy({0, 0, -2}, 0, 0, 0);
   const Pose b = pose_from_xyz_rpy({1, 2, -3}, 0.1, 0.2, 1.0);
-  const Trajectory way = swim(RecordedPath{"a.txt", {{100.0, a}, {102.0, b}, {103.0, a}}});
+  const Trajectory way = swim(recorded({{100.0, a}, {102.0, b}, {103.0, a}}));
   EXPECT_EQ(way.lasts_s(), 3.0);
   EXPECT_FALSE(way.speed_mps().has_value());
   EXPECT_TRUE(way.at(0).isApprox(a, 1e-12));
@@ -228,7 +232,7 @@ TEST(RecordedPath, GivesItsPosesAtItsTimes) {
   EXPECT_TRUE(way.at(1).translation().isApprox(Vec3(0.5, 1, -2.5), 1e-12));
   const Eigen::AngleAxisd whole(a.linear().transpose() * b.linear()), half(a.linear().transpose() * way.at(1).linear());
   EXPECT_NEAR(half.angle(), 0.5 * whole.angle(), 1e-9);
-  EXPECT_TRUE(swim(RecordedPath{"a.txt", {{5.0, b}}}).at(0).isApprox(b, 1e-12));
+  EXPECT_TRUE(swim(recorded({{5.0, b}})).at(0).isApprox(b, 1e-12));
 }
 
 // The vehicle rocks in its own axes about the path, and nothing else moves.
@@ -268,10 +272,13 @@ TEST(Obstruction, IsFoundWhereThePathFirstMeetsIt) {
   EXPECT_TRUE(first_obstruction(clear, truth, 1.5, 1e9).has_value());
   // A record that jumps across the block between two poses, and one that leaves the world.
   const Pose here = pose_from_xyz_rpy({-6, 0, -2.5}, 0, 0, 0), there = pose_from_xyz_rpy({6, 0, -2.5}, 0, 0, 0);
-  const Trajectory jump = swim(RecordedPath{"a", {{0, here}, {1, here}, {1.001, there}, {9, there}}});
+  const Trajectory jump = swim(recorded({{0, here}, {1, here}, {1.001, there}, {9, there}}));
   EXPECT_NEAR(first_obstruction(jump, truth, 0, 1e9)->p_world.x(), met, 0.2);
-  const Trajectory away = swim(RecordedPath{"a", {{0, here}, {1, pose_from_xyz_rpy({-1e6, 0, -2.5}, 0, 0, 0)}}});
+  const Trajectory away = swim(recorded({{0, here}, {1, pose_from_xyz_rpy({-1e6, 0, -2.5}, 0, 0, 0)}}));
   EXPECT_NEAR(first_obstruction(away, truth, 0, 1e9)->p_world.x(), -9, 0.11);
+  // Steps below what a time of that size can tell apart do not stop the search.
+  const Trajectory late = swim(recorded({{0, here}, {1e9, here}, {1e9 + 1e-6, there}}));
+  EXPECT_TRUE(first_obstruction(late, truth, 0, 1e10).has_value());  // one of the eight times there are
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/core/error.hpp"
-#include "ensonify/generators/waypoint_path.hpp"
+#include "ensonify/generators/trajectory.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/plot.hpp"
 #include "ensonify/output/png.hpp"
@@ -41,12 +41,15 @@ Line3 ring(const Eigen::AlignedBox3d& box) {
           box.corner(Box::BottomLeftFloor), box.corner(Box::TopLeftFloor),     box.corner(Box::TopLeftCeil)};
 }
 
+/// The scene's own path, as a vehicle swims it.
 Line3 swum(const Scene& scene) {
   Line3 line;
   if (scene.waypoints.size() < 2) return line;
-  const WaypointPath path(scene.waypoints);
-  const int steps = std::min(20000, static_cast<int>(path.length_m() / 0.05) + 1);
-  for (int i = 0; i <= steps; ++i) line.push_back(path.at(path.length_m() * i / steps).translation());
+  const Trajectory trajectory(TrajectoryPoses{}, scene, RandomKey::from_seed(0));
+  constexpr double step_m = 0.05;
+  for (double t = 0; t <= 0.5 * trajectory.repeats_s(); t = trajectory.next_look_s(t, step_m)) {
+    line.push_back(trajectory.path_at(t).translation());
+  }
   return line;
 }
 

@@ -28,10 +28,9 @@ TriangleMesh make_slab(RandomSequence& random) {
     rings[0].push_back(p - Vec3(0, 0, 0.5 * thickness));
     rings[1].push_back(random.uniform(0.86, 1.0) * p + Vec3(0, 0, 0.5 * thickness));
   }
-  std::vector<Ring> upright{rings[0], rings[1]};
   Polygon outline;
   for (const Vec3& p : rings[1]) outline.emplace_back(p.x(), p.y());
-  return loft(upright, triangulate(outline));
+  return loft(rings, triangulate(outline));
 }
 
 /// A piece whose longest side is about 1.

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
+#include <utility>
 
 #include "ensonify/scenes/mesh_weld.hpp"
 #include "ensonify/scenes/terrain.hpp"
@@ -19,19 +21,37 @@ constexpr Index no_vertex = 0xffffffff;
 
 std::uint64_t edge_of(Index a, Index b) { return std::uint64_t{std::min(a, b)} << 32 | std::max(a, b); }
 
-/// Midpoints of the edges of a mesh that are too long.
+using Triangle = std::array<Index, 3>;
+
+/// Midpoints of the edges of a mesh that are to be cut: the longest sides of triangles whose sides are all too long.
+/// Thin triangles are left for later: halving would make ever more and thinner ones of them.
 class Midpoints {
  public:
   Midpoints(TriangleMesh& mesh, double edge_m) : mesh_(mesh), squared_m2_(edge_m * edge_m) {}
 
-  Index of(Index a, Index b) {
-    const Eigen::Vector3f pa = mesh_.vertices_m[a], pb = mesh_.vertices_m[b];
-    if ((pb - pa).cast<double>().squaredNorm() <= squared_m2_) return no_vertex;
+  void mark_longest(const Triangle& t) {
+    std::pair<double, std::uint64_t> longest{0, 0};  // ties go by the edge, so that neighbours agree
+    std::size_t side = 0;
+    double shortest = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < 3; ++i) {
+      const Index a = t[i], b = t[(i + 1) % 3];
+      const std::pair here{(mesh_.vertices_m[b] - mesh_.vertices_m[a]).cast<double>().squaredNorm(), edge_of(a, b)};
+      shortest = std::min(shortest, here.first);
+      if (here > longest) {
+        longest = here;
+        side = i;
+      }
+    }
+    const Eigen::Vector3f pa = mesh_.vertices_m[t[side]], pb = mesh_.vertices_m[t[(side + 1) % 3]];
     const Eigen::Vector3f middle = 0.5f * (pa + pb);
-    if (middle == pa || middle == pb) return no_vertex;  // as fine as numbers get
-    const auto [entry, is_new] = middles_.try_emplace(edge_of(a, b), static_cast<Index>(mesh_.vertices_m.size()));
+    if (shortest <= squared_m2_ || middle == pa || middle == pb) return;  // as fine as asked, or as numbers get
+    const auto [entry, is_new] = middles_.try_emplace(longest.second, static_cast<Index>(mesh_.vertices_m.size()));
     if (is_new) mesh_.vertices_m.push_back(middle);
-    return entry->second;
+  }
+
+  Index of(Index a, Index b) const {
+    const auto entry = middles_.find(edge_of(a, b));
+    return entry == middles_.end() ? no_vertex : entry->second;
   }
 
  private:
@@ -39,8 +59,6 @@ class Midpoints {
   double squared_m2_;
   std::unordered_map<std::uint64_t, Index> middles_;
 };
-
-using Triangle = std::array<Index, 3>;
 
 /// Cuts one triangle along the middles of its sides; `middle[i]` lies between corners i and i + 1.
 void cut(const TriangleMesh& mesh, const Triangle& t, const std::array<Index, 3>& middle, std::vector<Triangle>& out) {
@@ -72,6 +90,57 @@ void cut(const TriangleMesh& mesh, const Triangle& t, const std::array<Index, 3>
   }
 }
 
+/// Points along edges, evenly spaced, the same for both triangles of an edge.
+class EdgePoints {
+ public:
+  EdgePoints(TriangleMesh& mesh, double edge_m) : mesh_(mesh), edge_m_(edge_m) {}
+
+  /// Vertices from a to b, both included.
+  std::vector<Index> between(Index a, Index b) {
+    const Index low = std::min(a, b), high = std::max(a, b);
+    const Eigen::Vector3f from = mesh_.vertices_m[low], span = mesh_.vertices_m[high] - from;
+    constexpr double slack = 1.25;  // rather a little too long than cut in half
+    const int pieces = std::max(1, static_cast<int>(std::ceil(span.cast<double>().norm() / (slack * edge_m_))));
+    const auto [entry, is_new] = first_.try_emplace(edge_of(a, b), static_cast<Index>(mesh_.vertices_m.size()));
+    std::vector<Index> points{low};
+    for (int i = 1; i < pieces; ++i) {
+      if (is_new) mesh_.vertices_m.push_back(from + static_cast<float>(i) / static_cast<float>(pieces) * span);
+      points.push_back(entry->second + static_cast<Index>(i - 1));
+    }
+    points.push_back(high);
+    if (a > b) std::reverse(points.begin(), points.end());
+    return points;
+  }
+
+ private:
+  TriangleMesh& mesh_;
+  double edge_m_;
+  std::unordered_map<std::uint64_t, Index> first_;
+};
+
+/// Cuts a triangle that has one short side across, in a zigzag between its two other sides.
+void cut_across(TriangleMesh& mesh, const Triangle& t, EdgePoints& edges, std::vector<Triangle>& out) {
+  const auto squared = [&](std::size_t i) {
+    return (mesh.vertices_m[t[i]] - mesh.vertices_m[t[(i + 1) % 3]]).cast<double>().squaredNorm();
+  };
+  std::size_t base = 0;
+  for (std::size_t i = 1; i < 3; ++i) {
+    if (squared(i) < squared(base)) base = i;
+  }
+  const Index a = t[base], b = t[(base + 1) % 3], tip = t[(base + 2) % 3];
+  const std::vector<Index> left = edges.between(a, tip), right = edges.between(b, tip);
+  const std::size_t n = left.size() - 1, m = right.size() - 1;
+  for (std::size_t i = 0, j = 0; i + j < n + m - 1;) {
+    if ((i + 1) * m <= (j + 1) * n) {
+      out.push_back({left[i], right[j], left[i + 1]});
+      ++i;
+    } else {
+      out.push_back({left[i], right[j], right[j + 1]});
+      ++j;
+    }
+  }
+}
+
 /// 0..1: how much grows at a place. About `coverage` of all places are above 0.
 double density(RandomKey key, const Vec3& p_m, const Growth& growth) {
   constexpr double rms = 0.203;  // of gradient noise
@@ -97,20 +166,30 @@ std::vector<Vec3> outward_normals(const TriangleMesh& mesh) {
 }  // namespace
 
 TriangleMesh split_long_edges(const TriangleMesh& mesh, double edge_m, std::size_t most) {
+  const auto check = [&](std::size_t triangles) {
+    if (triangles > most) {
+      throw GrowthTooFine(fmt::format("gives more than {} triangles; enlarge patch_m or shrink the object", most));
+    }
+  };
   TriangleMesh fine = mesh;
   for (bool changed = true; changed;) {
     Midpoints midpoints(fine, edge_m);
+    for (const Triangle& t : fine.triangles) midpoints.mark_longest(t);
     std::vector<Triangle> next;
     for (const Triangle& t : fine.triangles) {
-      const std::array<Index, 3> middle{midpoints.of(t[0], t[1]), midpoints.of(t[1], t[2]), midpoints.of(t[2], t[0])};
-      cut(fine, t, middle, next);
-      if (next.size() > most) {
-        throw GrowthTooFine(fmt::format("gives more than {} triangles; enlarge patch_m or shrink the object", most));
-      }
+      cut(fine, t, {midpoints.of(t[0], t[1]), midpoints.of(t[1], t[2]), midpoints.of(t[2], t[0])}, next);
+      check(next.size());
     }
     changed = next.size() != fine.triangles.size();
     fine.triangles = std::move(next);
   }
+  EdgePoints edges(fine, edge_m);
+  std::vector<Triangle> all;
+  for (const Triangle& t : fine.triangles) {
+    cut_across(fine, t, edges, all);
+    check(all.size());
+  }
+  fine.triangles = std::move(all);
   return fine;
 }
 

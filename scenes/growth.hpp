@@ -22,8 +22,8 @@ class GrowthTooFine : public std::runtime_error {
 };
 constexpr std::size_t max_grown_triangles = 1'000'000;
 
-/// Splits edges until none is longer than `edge_m`. Triangles that share an edge share its middle, so what was closed
-/// stays closed. Throws GrowthTooFine beyond `most` triangles.
+/// Cuts triangles until their sides are about `edge_m` at most, none above 1.5 times that. Triangles that share an edge
+/// share the points on it, so what was closed stays closed. Throws GrowthTooFine beyond `most` triangles.
 TriangleMesh split_long_edges(const TriangleMesh& mesh, double edge_m, std::size_t most);
 
 /// Moves every vertex outward, along the mean normal of its triangles weighted by their area, by 0 to the thickness.

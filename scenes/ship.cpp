@@ -89,7 +89,7 @@ Assembly build_ship(const Ship& ship, RandomKey key) {
   const ShipShell shell(ship, stations);
   const std::vector<Hatch> hatches = ship_hatches(ship, key);
   const Assembly outfit = ship_outfit(ship, hatches, key);
-  const int shift = ship.damage > 0 && ship.damage >= breaks_from ? 2 : 1;
+  const int shift = ship.damage >= breaks_from ? 2 : 1;  // meshes of the hull come first
   Assembly result;
   if (ship.damage <= 0) {
     result = assembly_of(shell.solid());

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
+#include <set>
 
 #include "ensonify/generators/image_figures.hpp"
 
@@ -13,23 +15,42 @@ constexpr int summary_bins = 32;
 constexpr int closest_pairs = 20;
 using Columns = std::map<std::string, std::vector<double>>;
 
+/// Least and greatest of every column over all places, so that histograms can be compared.
 struct Edges {
   std::map<std::string, std::pair<double, double>> of;
+  std::set<std::string> broken;  ///< keys of which some value is not a whole number
 
   void add(const Columns& columns) {
     for (const auto& [key, values] : columns) {
       const auto [min, max] = std::minmax_element(values.begin(), values.end());
+      const auto whole = [](double v) { return v == std::round(v); };
+      if (!std::all_of(values.begin(), values.end(), whole)) broken.insert(key);
       const auto [at, fresh] = of.try_emplace(key, *min, *max);
       if (!fresh) at->second = {std::min(at->second.first, *min), std::max(at->second.second, *max)};
     }
   }
 };
 
+/// Steps for whole numbers hold equally many of them each: others would show gaps that are not there.
+struct Steps {
+  double low = 0, high = 0;
+  int bins = summary_bins;
+};
+
+Steps steps_of(double low, double high, bool whole) {
+  if (!whole || high - low > 1e6) return {low, high, summary_bins};
+  const int values = static_cast<int>(high - low) + 1;
+  const int each = (values + summary_bins - 1) / summary_bins;
+  const int bins = (values + each - 1) / each;
+  return {low - 0.5, low - 0.5 + bins * each, bins};
+}
+
 std::map<std::string, Summary> summaries(const Columns& columns, const Edges& edges) {
   std::map<std::string, Summary> result;
   for (const auto& [key, values] : columns) {
     const auto [low, high] = edges.of.at(key);
-    result[key] = summarise(values, low, high, summary_bins);
+    const Steps steps = steps_of(low, high, !edges.broken.contains(key));
+    result[key] = summarise(values, steps.low, steps.high, steps.bins);
   }
   return result;
 }

@@ -8,7 +8,7 @@
 namespace ensonify {
 
 /// Two frames count as nearly equal where both hold; why these figures: docs/datasets.md, "How alike".
-constexpr int near_hash_distance = 10;
+constexpr int near_hash_distance = 7;
 constexpr double near_correlation = 0.99;
 
 struct NearPair {

@@ -9,6 +9,7 @@ void add_generate(CLI::App& app);
 void add_ping(CLI::App& app);
 void add_scene(CLI::App& app);
 void add_sonar(CLI::App& app);
+void add_stats(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_voxelize(CLI::App& app);
 

@@ -50,6 +50,7 @@ int main(int argc, char** argv) {
   cli::add_ping(app);
   cli::add_scene(app);
   cli::add_sonar(app);
+  cli::add_stats(app);
   cli::add_verify(app);
   cli::add_voxelize(app);
   try {

@@ -82,7 +82,7 @@ fs::path DatasetPaths::grid(const std::string& place, const std::string& extensi
   return root / "grids" / (place + extension);
 }
 
-void open_dataset(const DatasetPaths& paths, const std::string& plan, bool force) {
+void prepare_dataset(const DatasetPaths& paths, const std::string& plan, bool force) {
   std::error_code error;
   if (paths.root.empty()) throw ConfigError("--out: must name a folder");
   // In this order: another shard that starts now writes its plan before anything else.

@@ -42,6 +42,6 @@ struct DatasetPaths {
 
 /// Makes the folder ready for this plan: new, or holding the same plan (then the work resumes). `force` first removes
 /// a dataset of another plan. Throws ConfigError where the folder holds something else.
-void open_dataset(const DatasetPaths& paths, const std::string& plan, bool force);
+void prepare_dataset(const DatasetPaths& paths, const std::string& plan, bool force);
 
 }  // namespace ensonify

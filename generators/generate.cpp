@@ -58,7 +58,7 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
     throw ConfigError("truth: true writes EXR files, which WebDataset shards do not hold; use --format folder");
   }
   const DatasetPaths paths{options.out};
-  open_dataset(paths, plan_json(maker, options.isa, options.format), options.force);
+  prepare_dataset(paths, plan_json(maker, options.isa, options.format), options.force);
   std::error_code no_throw;
   if (std::filesystem::is_regular_file(paths.manifest(), no_throw)) return Outcome::complete;
   check_trajectories(maker);
@@ -112,7 +112,7 @@ std::string generate_only(const Recipe& recipe, const GenerateOptions& options, 
   const FrameMaker maker(recipe, options.isa);
   const DatasetPaths paths{options.out};
   constexpr bool replace = false;  // a whole set is not given up for one frame
-  open_dataset(paths, plan_json(maker, options.isa, SampleFormat::folder), replace);
+  prepare_dataset(paths, plan_json(maker, options.isa, SampleFormat::folder), replace);
   maker.check_trajectory(maker.locate(index).place);
   return write_frame(maker, paths, maker.make(index)).line;
 }

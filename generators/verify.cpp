@@ -2,18 +2,15 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/core/parallel.hpp"
+#include "ensonify/generators/dataset_reader.hpp"
 #include "ensonify/generators/write_block.hpp"
-#include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/grid_files.hpp"
-#include "ensonify/output/png.hpp"
 #include "ensonify/output/sha256.hpp"
-#include "ensonify/output/tar_shard.hpp"
 
 namespace ensonify {
 namespace {
@@ -21,75 +18,16 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr std::array kinds{"raw", "clean", "mask", "labels"};
-void set_image(FramePixels& pixels, const std::string& kind, int bits, std::span<const std::uint8_t> png,
-               const fs::path& name) {
-  if (kind == "raw" && bits == 16) {
-    pixels.raw = decode_png<std::uint16_t>(png, name);
-    return;
-  }
-  Image2<std::uint8_t> image = decode_png<std::uint8_t>(png, name);
-  if (kind == "raw")
-    pixels.raw = std::move(image);
-  else if (kind == "clean")
-    pixels.clean = std::move(image);
-  else if (kind == "mask")
-    pixels.mask = std::move(image);
-  else if (kind == "labels")
-    pixels.labels = std::move(image);
-  else
-    throw DataError(fmt::format("{}: not an image of a frame", name.string()));
-}
-
-/// What is wrong with the images of one frame; empty where nothing is. bins 0: a recipe may draw the range window a
-/// frame, so the number of native bins may differ.
-std::string image_fault(const FramePixels& pixels, int threshold, int bins, int beams) {
-  const auto size_fault = [&](const auto& image) {
-    const bool right = image.columns() == beams && image.rows() == (bins > 0 ? bins : pixels.clean.rows());
-    return right ? std::string()
-                 : fmt::format("{} x {} pixels, not {} x {}", image.rows(), image.columns(), bins, beams);
-  };
-  for (const std::string& fault : {std::visit(size_fault, pixels.raw), size_fault(pixels.clean),
-                                   size_fault(pixels.mask), size_fault(pixels.labels)}) {
-    if (!fault.empty()) return fault;
-  }
-  const auto clean = pixels.clean.pixels();
-  const auto mask = pixels.mask.pixels();
-  for (std::size_t i = 0; i < clean.size(); ++i) {
-    if (mask[i] != (clean[i] >= threshold ? 255 : 0)) return fmt::format("mask is not clean >= {}", threshold);
-  }
-  return {};
-}
-
 class Verifier {
  public:
   Verifier(const fs::path& folder, const std::function<void(int, int)>& on_progress)
-      : folder_(folder), on_progress_(on_progress) {
-    const fs::path manifest = folder / "dataset.json";
-    std::error_code error;
-    if (!fs::is_regular_file(manifest, error)) {
-      throw DataError(fmt::format(
-          "{}: no dataset.json: no dataset, or an unfinished one; run generate again to finish it", folder.string()));
-    }
-    try {
-      manifest_ = json::parse(read_text(manifest));
-      threshold_ = manifest_.at("mask").at("threshold");
-      bits_ = manifest_.at("sonar").at("receive").at("bits");
-      beams_ = static_cast<int>(manifest_.at("sonar").at("beam_azimuth_rad").size());
-      const json& sonar = manifest_.at("recipe").at("sonar");
-      const bool varies = sonar.contains("range_max_m") && sonar["range_max_m"].is_object();
-      bins_ = varies ? 0 : manifest_.at("sonar").at("range_bins").get<int>();
-      for (const auto& [split, count] : manifest_.at("counts").items()) total_ += count.get<int>();
-    } catch (const json::exception& e) {
-      throw DataError(fmt::format("{}: broken manifest: {}", manifest.string(), e.what()));
-    }
-  }
+      : dataset_(open_dataset(folder)), on_progress_(on_progress) {}
 
   VerifyReport run() {
     Sha256 root;
-    for (const auto& [split, first_shard] : splits_in_order()) check_split(split, first_shard, root);
+    for (const DatasetSplit& split : dataset_.splits) check_split(split, root);
     check_grids(root);
-    if (root.hex() != manifest_.at("root_hash")) fault("the root hash differs from the manifest's");
+    if (root.hex() != dataset_.root_hash) fault("the root hash differs from the manifest's");
     return std::move(report_);
   }
 
@@ -99,110 +37,58 @@ class Verifier {
     if (report_.faults.size() < 100) report_.faults.push_back(what);
   }
 
-  std::vector<std::pair<std::string, std::size_t>> splits_in_order() const {
-    std::vector<std::pair<std::string, std::size_t>> splits;
-    const json& shards = manifest_.at("shards");
-    for (std::size_t s = 0; s < shards.size(); ++s) {
-      const std::string split = shards[s].at("split");
-      if (splits.empty() || splits.back().first != split) splits.emplace_back(split, s);
-    }
-    return splits;
-  }
-
-  void check_split(const std::string& split, std::size_t first_shard, Sha256& root) {
-    std::vector<std::string> lines;
-    std::ifstream metadata(folder_ / split / "metadata.jsonl");
-    for (std::string line; std::getline(metadata, line);) lines.push_back(line);
-    const auto expected = manifest_.at("counts").at(split).get<std::size_t>();
-    if (lines.size() != expected) {
-      fault(fmt::format("{}/metadata.jsonl has {} lines, {} expected", split, lines.size(), expected));
+  void check_split(const DatasetSplit& split, Sha256& root) {
+    MetadataIndex metadata;
+    try {
+      metadata = index_metadata(dataset_, split.blocks.front().split);
+    } catch (const Error& e) {
+      fault(e.what());
       return;
     }
-    std::vector<std::string> hashes(lines.size());
-    const json& shards = manifest_.at("shards");
-    std::size_t last_shard = first_shard;
-    while (last_shard < shards.size() && shards[last_shard].at("split") == split) ++last_shard;
-    std::vector<std::size_t> starts{0};
-    for (std::size_t s = first_shard; s < last_shard; ++s) {
-      starts.push_back(starts.back() + shards[s].at("frames").get<std::size_t>());
-    }
-    if (starts.back() != lines.size()) {
-      fault(fmt::format("{}: the shards of the manifest hold {} frames, not {}", split, starts.back(), lines.size()));
-      return;
-    }
-    const bool tars = manifest_.at("format") == "webdataset";
-    parallel_for(static_cast<int>(last_shard - first_shard), [&](int s) {
-      const auto number = static_cast<std::size_t>(s);
+    std::vector<std::string> hashes(static_cast<std::size_t>(split.frames));
+    parallel_for(static_cast<int>(split.blocks.size()), [&](int b) {
+      const DatasetBlock& block = split.blocks[static_cast<std::size_t>(b)];
+      const std::span block_hashes(&hashes[static_cast<std::size_t>(block.first)],
+                                   static_cast<std::size_t>(block.frames));
       try {
-        if (tars)
-          check_tar(split, s, starts[number], starts[number + 1], lines, hashes);
-        else
-          for (std::size_t i = starts[number]; i < starts[number + 1]; ++i) check_files(split, i, lines[i], hashes[i]);
+        check_block(split, block, read_lines(metadata, block.first, block.frames), block_hashes);
       } catch (const Error& e) {
         fault(e.what());
       }
-      Sha256 shard_hash;
-      for (std::size_t i = starts[number]; i < starts[number + 1]; ++i) shard_hash.add(std::string_view(hashes[i]));
-      if (shard_hash.hex() != shards[first_shard + number].at("sha256")) {
-        fault(
-            fmt::format("{}: frames {} to {} differ from the manifest", split, starts[number], starts[number + 1] - 1));
+      Sha256 block_hash;
+      for (const std::string& hash : block_hashes) block_hash.add(std::string_view(hash));
+      if (block_hash.hex() != block.sha256) {
+        fault(fmt::format("{}: frames {} to {} differ from the manifest", split.name, block.first,
+                          block.first + block.frames - 1));
       }
     });
     for (const std::string& hash : hashes) root.add(std::string_view(hash));
   }
 
-  void check_frame(const FramePixels& pixels, const std::string& what, const std::string& line, std::string& hash) {
-    const std::string wrong = image_fault(pixels, threshold_, bins_, beams_);
-    if (!wrong.empty()) fault(fmt::format("{}: {}", what, wrong));
-    hash = content_hash(pixels, line);
-    const std::scoped_lock lock(mutex_);
-    on_progress_(++report_.frames, total_);
-  }
-
-  void check_files(const std::string& split, std::size_t number, const std::string& line, std::string& hash) {
-    FramePixels pixels;
-    for (const char* kind : kinds) {
-      const fs::path file = folder_ / split / kind / fmt::format("{:06}.png", number);
-      set_image(pixels, kind, bits_, read_file(file), file);
-    }
-    check_frame(pixels, fmt::format("{} {:06}", split, number), line, hash);
-  }
-
-  void check_tar(const std::string& split, int shard, std::size_t first, std::size_t last,
-                 const std::vector<std::string>& lines, std::vector<std::string>& hashes) {
-    const fs::path path = folder_ / split / fmt::format("{}-{:06}.tar", split, shard);
-    FramePixels pixels;
-    std::size_t images = 0;
-    std::size_t number = first;
-    read_tar(path, [&](const std::string& member, const std::vector<std::uint8_t>& bytes) {
-      if (number >= last) throw DataError(fmt::format("{}: more frames than the manifest says", path.string()));
-      const std::string stem = fmt::format("{:06}.", number);
-      if (!member.starts_with(stem)) throw DataError(fmt::format("{}: unexpected member {}", path.string(), member));
-      const std::string kind = member.substr(stem.size(), member.find('.', stem.size()) - stem.size());
-      if (kind != "json") {
-        set_image(pixels, kind, bits_, bytes, path / member);
-        ++images;
-        return;
-      }
-      if (images != kinds.size()) throw DataError(fmt::format("{}: {} lacks images", path.string(), member));
-      check_frame(pixels, fmt::format("{} {:06}", split, number), lines[number], hashes[number]);
-      pixels = {};
-      images = 0;
-      ++number;
+  void check_block(const DatasetSplit& split, const DatasetBlock& block, const std::vector<std::string>& lines,
+                   std::span<std::string> hashes) {
+    const auto every = [](int) { return true; };
+    read_block(dataset_, block, every, [&](int number, const FramePixels& pixels) {
+      const std::string wrong = pixel_fault(dataset_, pixels);
+      if (!wrong.empty()) fault(fmt::format("{} {:06}: {}", split.name, number, wrong));
+      const auto i = static_cast<std::size_t>(number - block.first);
+      hashes[i] = content_hash(pixels, lines[i]);
+      const std::scoped_lock lock(mutex_);
+      on_progress_(++report_.frames, dataset_.frames());
     });
-    if (number != last) fault(fmt::format("{}: frames are missing", path.string()));
   }
 
   void check_grids(Sha256& root) {
-    for (const json& entry : manifest_.at("grids")) {
+    const json manifest = json::parse(dataset_.manifest);
+    for (const json& entry : manifest.at("grids")) {
       const std::string file = entry.at("file");
       try {
-        const OccupancyGrid grid = read_grid(folder_ / file);
+        const OccupancyGrid grid = read_grid(dataset_.folder / file);
         const std::string hash = Sha256().add(grid.occupancy).add(grid.observable).hex();
         if (hash != entry.at("sha256")) fault(fmt::format("{} differs from the manifest", file));
         root.add(std::string_view(hash));
         for (const char* extension : {".bt", ".pgm", ".yaml"}) {
-          const fs::path sibling = fs::path(folder_ / file).replace_extension(extension);
+          const fs::path sibling = fs::path(dataset_.folder / file).replace_extension(extension);
           if (!fs::is_regular_file(sibling)) fault(fmt::format("{} is missing", sibling.string()));
         }
         ++report_.grids;
@@ -212,14 +98,8 @@ class Verifier {
     }
   }
 
-  fs::path folder_;
+  Dataset dataset_;
   std::function<void(int, int)> on_progress_;
-  json manifest_;
-  int threshold_ = 0;
-  int bits_ = 8;
-  int beams_ = 0;
-  int bins_ = 0;
-  int total_ = 0;
   VerifyReport report_;
   std::mutex mutex_;
 };

@@ -2,10 +2,10 @@
 
 #include <functional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "ensonify/generators/dataset_plan.hpp"
+#include "ensonify/generators/frame_pixels.hpp"
 #include "ensonify/generators/observed_record.hpp"
 
 namespace ensonify {
@@ -13,14 +13,6 @@ namespace ensonify {
 /// One line of metadata.jsonl (without newline) for a frame.
 std::string metadata_line(const FrameMaker& maker, const FramePose& pose, const SonarModel& sonar,
                           const Image2<std::uint8_t>& mask);
-
-/// The pixels of a frame as its files hold them; `raw` has 8 or 16 bits, as the instrument has.
-struct FramePixels {
-  std::variant<Image2<std::uint8_t>, Image2<std::uint16_t>> raw;
-  Image2<std::uint8_t> clean;
-  Image2<std::uint8_t> mask;
-  Image2<std::uint8_t> labels;
-};
 
 /// SHA-256 of what a frame says, whatever its files: its pixels (16 bits: low byte first) and its metadata line.
 std::string content_hash(const FramePixels& pixels, const std::string& line);

@@ -1,0 +1,89 @@
+#include <fmt/format.h>
+#include <tbb/global_control.h>
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+
+#include "ensonify/cli/arguments.hpp"
+#include "ensonify/cli/commands.hpp"
+#include "ensonify/cli/progress.hpp"
+#include "ensonify/generators/stats_json.hpp"
+#include "ensonify/generators/stats_plots.hpp"
+#include "ensonify/output/atomic_file.hpp"
+#include "ensonify/output/png.hpp"
+
+namespace ensonify::cli {
+namespace {
+
+struct Arguments {
+  std::string folder;
+  std::string out;
+  StatsOptions options;
+  int jobs = 0;
+  bool json = false;
+  std::string progress = "auto";
+};
+
+void print_summary(const DatasetStats& stats) {
+  fmt::print("{}: {}\n  split         frames     read   mask share: 5 %   median     95 %   without echo\n", stats.name,
+             stats.title);
+  const auto line = [](const std::string& name, const Figures& f) {
+    fmt::print("  {:<10} {:9} {:8} {:18.4f} {:8.4f} {:8.4f} {:14.4f}\n", name, f.frames, f.frames_read,
+               f.mask_share_percentiles[1], f.mask_share_percentiles[3], f.mask_share_percentiles[5],
+               f.frames_read > 0 ? static_cast<double>(f.pixels.without_echo) / f.frames_read : 0.0);
+  };
+  for (const auto& [split, figures] : stats.splits) line(split, figures);
+  line("all", stats.overall);
+  for (const PlaceFigures& place : stats.places) {
+    if (place.figures.frames == 0) fmt::print("  never seen: {} ({})\n", place.place.name, place.split);
+  }
+  if (!stats.variety) return;
+  const Variety& v = stats.variety->variety;
+  fmt::print("  nearly equal pairs in train: {}{}, {} of {} frames in one; {} blank frames\n",
+             v.complete ? "" : "more than ", v.pairs, v.frames_in_pairs, v.frames, v.blank);
+}
+
+void run(const Arguments& a) {
+  std::optional<tbb::global_control> jobs;
+  if (a.jobs > 0) jobs.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(a.jobs));
+  ProgressLine progress(parse_progress_style(a.progress));
+  const auto on_progress = [&](int done, int total) { progress.show("stats", done, done, total); };
+  const DatasetStats stats = dataset_stats(open_dataset(a.folder), a.options, on_progress);
+  const std::string json = stats_json(stats);
+  if (a.json) {
+    fmt::print("{}", json);
+    return;
+  }
+  const std::filesystem::path out =
+      a.out.empty() ? std::filesystem::path(a.folder) / "stats" : std::filesystem::path(a.out);
+  write_file(out / "stats.json", json);
+  write_file(out / "stats.png", draw_plots(stats_plots(stats)));
+  for (const auto& [split, sheet] : stats.contact_sheets) {
+    write_file(out / fmt::format("contact_{}.png", split), encode_png(draw_contact_sheet(sheet)));
+  }
+  print_summary(stats);
+  fmt::print("stats.json stats.png contact_*.png in {}\n", out.string());
+}
+
+}  // namespace
+
+void add_stats(CLI::App& app) {
+  auto* command = app.add_subcommand("stats", "Describe a dataset: shares, levels, ranges, poses, nearly equal frames");
+  auto a = std::make_shared<Arguments>();
+  command->add_option("DIR", a->folder, "Folder of the dataset")->required()->check(some_path());
+  command->add_option("--out", a->out, "Folder for stats.json, stats.png, contact_<split>.png (default: DIR/stats)")
+      ->check(some_path());
+  command->add_option("--max-frames", a->options.max_frames, "Read at most this many frames, spread evenly over places")
+      ->check(CLI::Range(1, 100'000'000));
+  command->add_option("--columns", a->options.contact_columns, "Frames of a place on the contact sheets")
+      ->check(CLI::Range(1, 64));
+  command->add_option("--jobs", a->jobs, "Threads; the result does not depend on it (default: all cores)")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--json", a->json, "Print stats.json and write nothing");
+  command->add_option("--progress", a->progress, "auto, json or none")->check(CLI::IsMember({"auto", "json", "none"}));
+  command->footer("Example:\n  ensonify stats out/quick\n  ensonify stats out/paper --max-frames 1000 --out out/look");
+  command->callback([a] { run(*a); });
+}
+
+}  // namespace ensonify::cli

@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ostream.h>
 #include <tbb/global_control.h>
 
 #include <fstream>
@@ -86,7 +87,7 @@ void run(const Arguments& arguments) {
       fmt::print("shard {} done; the dataset is finished by whichever shard comes last\n", arguments.shard);
       break;
     case Outcome::stopped:
-      fmt::print(stderr, "\nensonify: stopped; the same command resumes\n");
+      fmt::print(std::cerr, "\nensonify: stopped; the same command resumes\n");
       throw ExitCode{128 + caught_signal()};
   }
 }

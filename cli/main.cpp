@@ -1,15 +1,19 @@
 #include <fmt/format.h>
-#include <fmt/ostream.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstdio>
 #include <exception>
-#include <iostream>
+#include <filesystem>
 #include <new>
 #include <string>
+#include <system_error>
 #include <vector>
 
 #include "ensonify/cli/commands.hpp"
+#include "ensonify/cli/signals.hpp"
+#include "ensonify/cli/streams.hpp"
 #include "ensonify/config/reader.hpp"
 #include "ensonify/core/error.hpp"
 
@@ -34,9 +38,7 @@ void check_command(const CLI::App& app, const std::vector<std::string>& words) {
                                                 : fmt::format("did you mean '{}'?", nearest)));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app(
       "ensonify simulates multibeam imaging sonars on the CPU: scenes in, sonar images with masks, labels and\n"
       "occupancy truth out.");
@@ -63,13 +65,29 @@ int main(int argc, char** argv) {
   } catch (const cli::ExitCode& e) {
     return e.code;
   } catch (const ConfigError& e) {
-    fmt::print(std::cerr, "ensonify: {}\n", e.what());
+    cli::complain(e.what());
     return 2;
   } catch (const std::bad_alloc&) {
-    fmt::print(std::cerr, "ensonify: out of memory\n");
+    cli::complain("out of memory");
+    return 1;
+  } catch (const std::filesystem::filesystem_error& e) {
+    cli::complain(e.what());
+    return 1;
+  } catch (const std::system_error& e) {
+    // fmt::print's, since files are written by DiskError's rules; what is wrong shows when the stream is finished.
+    if (std::ferror(stdout) != 0 && e.code().value() == EPIPE) return 0;
+    cli::complain(fmt::format("standard output: {}", e.what()));
     return 1;
   } catch (const std::exception& e) {
-    fmt::print(std::cerr, "ensonify: {}\n", e.what());
+    cli::complain(e.what());
     return 1;
   }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  cli::hold_standard_streams();
+  cli::end_at_signals();
+  return cli::finish_standard_output(run(argc, argv));
 }

@@ -6,8 +6,10 @@
 
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
+#include "ensonify/cli/signals.hpp"
 #include "ensonify/generators/describe.hpp"
 #include "ensonify/generators/form_images.hpp"
+#include "ensonify/generators/json_text.hpp"
 #include "ensonify/generators/truth_channels.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/fan_view.hpp"
@@ -68,15 +70,6 @@ void run(const Arguments& a) {
   const ImageSettings settings{sample_noise(profile, key.child("noise parameters"), sampled), 0.0, 8};
   const PingImages images = form_images(sonar, PointSpread(sonar), ping.echo, ping.truth, settings, key.child("noise"));
 
-  const std::filesystem::path out = a.out;
-  write_file(out / "raw.png", encode_png(images.raw.grey));
-  write_file(out / "clean.png", encode_png(images.clean.grey));
-  write_file(out / "mask.png", encode_png(images.mask));
-  write_file(out / "labels.png", encode_png(images.labels));
-  write_file(out / "fan.png", encode_png(fan_view(images.raw.grey, sonar.geometry, 720)));
-  write_exr(out / "echo.exr", {{"direct", ping.echo.direct}}, truth_comment);
-  write_exr(out / "truth.exr", truth_channels(ping.echo, ping.truth), truth_comment);
-
   nlohmann::json record{{"scene", scene.name},
                         {"layout", scene.layout},
                         {"sonar", describe(sonar)},
@@ -91,7 +84,17 @@ void run(const Arguments& a) {
   record.update(summary(images, ping.truth, sonar.geometry));
   for (const auto& [name, value] : sampled) record["sampled"][name] = value;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) record["instances"].push_back(scene.instances[i].name);
-  write_file(out / "ping.json", record.dump(1) + "\n");
+  const std::filesystem::path out = a.out;
+  write_unbroken(out, [&] {
+    write_file(out / "raw.png", encode_png(images.raw.grey));
+    write_file(out / "clean.png", encode_png(images.clean.grey));
+    write_file(out / "mask.png", encode_png(images.mask));
+    write_file(out / "labels.png", encode_png(images.labels));
+    write_file(out / "fan.png", encode_png(fan_view(images.raw.grey, sonar.geometry, 720)));
+    write_exr(out / "echo.exr", {{"direct", ping.echo.direct}}, truth_comment);
+    write_exr(out / "truth.exr", truth_channels(ping.echo, ping.truth), truth_comment);
+    write_file(out / "ping.json", json_text(record));
+  });
 
   fmt::print("{} x {} pixels in {}: mask {:.1f} %, nearest surface {} m\n", images.raw.grey.rows(),
              images.raw.grey.columns(), a.out, 100.0 * record["mask_share"].get<double>(),

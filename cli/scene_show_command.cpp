@@ -6,6 +6,7 @@
 
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
+#include "ensonify/cli/signals.hpp"
 #include "ensonify/core/error.hpp"
 #include "ensonify/generators/trajectory.hpp"
 #include "ensonify/output/atomic_file.hpp"
@@ -79,7 +80,7 @@ Series projected(const Line3& line, int up_axis, Series::Style style, std::strin
 }
 
 /// The scene from above (up_axis 1) or from the south (2), drawn to scale.
-void write_map(const Scene& scene, const ShowArguments& a, int up_axis, const std::filesystem::path& path) {
+std::vector<std::uint8_t> draw_map(const Scene& scene, const ShowArguments& a, int up_axis) {
   const Eigen::AlignedBox3d& b = scene.bounds_m;
   const double across_m = b.sizes().x(), up_m = b.sizes()[up_axis] + (up_axis == 2 ? 1.0 : 0.0);
   Camera camera = up_axis == 1 ? plan_camera(scene) : side_camera(scene);
@@ -103,17 +104,21 @@ void write_map(const Scene& scene, const ShowArguments& a, int up_axis, const st
     plot.series.push_back(
         projected(fan_outline(sonar.geometry, parse_pose(a.pose)), up_axis, Series::Style::line, sonar.name));
   }
-  write_file(path, draw_plots({{plot}, 1, width + 120, height + 120}));
+  return draw_plots({{plot}, 1, width + 120, height + 120});
 }
 
 void show(const ShowArguments& a) {
   const Scene scene = open_scene(a.scene, a.layout);
   const std::filesystem::path out = a.out;
-  write_map(scene, a, 1, out / "plan.png");
-  write_map(scene, a, 2, out / "side.png");
+  const std::vector<std::uint8_t> plan = draw_map(scene, a, 1), side = draw_map(scene, a, 2);
   const int height = static_cast<int>(a.width / view_aspect);
   const Camera camera = oblique_camera(scene, radians(a.azimuth_deg), radians(a.elevation_deg), view_aspect);
-  write_file(out / "view.png", encode_png(draw_scene(scene, camera, a.width, height)));
+  const std::vector<std::uint8_t> view = encode_png(draw_scene(scene, camera, a.width, height));
+  write_unbroken(out, [&] {
+    write_file(out / "plan.png", plan);
+    write_file(out / "side.png", side);
+    write_file(out / "view.png", view);
+  });
   fmt::print("{}: plan.png side.png view.png in {}\n", scene.name, a.out);
 }
 
@@ -160,7 +165,7 @@ void add_scene_export(CLI::App& scene_command) {
     const std::filesystem::path out = a->out;
     const Scene scene = open_scene(a->scene, a->layout);
     const std::vector<std::uint8_t> bytes = export_scene(scene, out.extension().string(), a->surface);
-    write_file(out, bytes);
+    write_unbroken(out.parent_path(), [&] { write_file(out, bytes); });
     fmt::print("{}: {:.1f} MB\n", a->out, static_cast<double>(bytes.size()) * 1e-6);
   });
 }

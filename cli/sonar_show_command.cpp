@@ -8,6 +8,7 @@
 
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
+#include "ensonify/cli/signals.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/plot.hpp"
 #include "ensonify/scenes/water.hpp"
@@ -167,13 +168,16 @@ void show(const Arguments& a) {
   std::string table = "beam,azimuth_deg,to_next_deg,width_deg\n";
   for (int b = 0; b < beams; ++b) table += beam_line(sonar, b, "{},{:.6f},{:.6f},{:.6f}\n");
   const std::filesystem::path out = a.out;
-  write_file(out / "beams.csv", table);
   const PlotSheet sheet{{azimuth_plot(sonar), elevation_plot(sonar), fan_plot(sonar), beam_table_plot(sonar),
                          pulse_plot(sonar), range_plot(sonar)},
                         3,
                         1200,
                         620};
-  write_file(out / "sonar.png", draw_plots(sheet));
+  const std::vector<std::uint8_t> picture = draw_plots(sheet);
+  write_unbroken(out, [&] {
+    write_file(out / "beams.csv", table);
+    write_file(out / "sonar.png", picture);
+  });
   fmt::print("sonar.png beams.csv in {}\n", a.out);
 }
 

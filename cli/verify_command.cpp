@@ -4,6 +4,7 @@
 
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/cli/progress.hpp"
+#include "ensonify/cli/streams.hpp"
 #include "ensonify/generators/verify.hpp"
 
 namespace ensonify::cli {
@@ -19,9 +20,12 @@ void add_verify(CLI::App& app) {
     ProgressLine progress(parse_progress_style(*style));
     const VerifyReport report =
         verify_dataset(*folder, [&](int done, int total) { progress.show("verify", done, done, total); });
-    for (const std::string& fault : report.faults) fmt::print(stderr, "ensonify: {}\n", fault);
+    for (const std::string& fault : report.faults) complain(fault);
     if (!report.faults.empty()) {
-      fmt::print(stderr, "ensonify: {} is not as its manifest says\n", *folder);
+      complain(
+          fmt::format("{} is not as its manifest says; delete the files named and dataset.json, then generate again "
+                      "makes them anew",
+                      *folder));
       throw ExitCode{1};
     }
     fmt::print("{}: {} frames and {} grids are whole; mask == (clean >= threshold) in every pixel\n", *folder,

@@ -4,6 +4,7 @@
 
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
+#include "ensonify/cli/signals.hpp"
 #include "ensonify/output/grid_files.hpp"
 #include "ensonify/sim/voxelize.hpp"
 
@@ -21,7 +22,9 @@ struct Arguments {
 void run(const Arguments& a) {
   const Scene scene = open_scene(a.scene, a.layout);
   const VoxelTruth truth = voxelize(scene, a.resolution_m);
-  write_grid(truth.grid, a.out, {a.slice_z_m, false});
+  write_unbroken(std::filesystem::path(a.out).parent_path(), [&] {
+    write_grid(truth.grid, a.out, {a.slice_z_m, false});
+  });
   const GridFrame& frame = truth.grid.frame;
   std::size_t surface = 0;
   std::size_t interior = 0;

@@ -16,6 +16,7 @@ namespace ensonify {
 namespace {
 
 constexpr std::size_t max_file_bytes = 4u << 20;
+constexpr std::size_t max_text_bytes = 1000;
 
 std::size_t edit_distance(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
@@ -35,6 +36,32 @@ std::string describe(Limits limits) {
   if (limits.low == 0.0 && limits.high == not_negative.high) return "must not be negative";
   if (!std::isfinite(limits.low) && !std::isfinite(limits.high)) return "must be a finite number";
   return fmt::format("must lie in [{}, {}]", limits.low, limits.high);
+}
+
+/// The bytes of the UTF-8 character that `text` begins with; 0 where it begins with none.
+std::size_t utf8_length(std::string_view text) {
+  const auto byte = static_cast<unsigned char>(text[0]);
+  const std::size_t length = byte < 0x80   ? 1
+                             : byte < 0xC2 ? 0
+                             : byte < 0xE0 ? 2
+                             : byte < 0xF0 ? 3
+                             : byte < 0xF5 ? 4
+                                           : 0;
+  if (length == 0 || text.size() < length) return 0;
+  const auto follows = [](char c) { return (static_cast<unsigned char>(c) & 0xC0) == 0x80; };
+  return std::all_of(text.begin() + 1, text.begin() + static_cast<std::ptrdiff_t>(length), follows) ? length : 0;
+}
+
+/// What makes a text unfit to be shown, written into JSON, or taken for a path; empty where nothing does.
+std::string text_fault(std::string_view text) {
+  if (text.size() > max_text_bytes) return fmt::format("must be at most {} bytes long", max_text_bytes);
+  while (!text.empty()) {
+    const std::size_t length = utf8_length(text);
+    if (length == 0) return "must be UTF-8";
+    if (static_cast<unsigned char>(text[0]) < ' ' || text[0] == 127) return "must not hold control characters";
+    text.remove_prefix(length);
+  }
+  return {};
 }
 
 }  // namespace
@@ -83,7 +110,11 @@ Reader Reader::from_file(const std::filesystem::path& path) {
 Reader Reader::from_text(const std::string& yaml, const std::string& name) {
   auto source = std::make_shared<const Source>(Source{name, {}});
   try {
-    return {YAML::Load(yaml), std::move(source), ""};
+    std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
+    if (documents.size() != 1) {
+      throw ConfigError(fmt::format("{}: holds {} YAML documents; it must be one", name, documents.size()));
+    }
+    return {documents[0], std::move(source), ""};
   } catch (const YAML::Exception& e) {
     throw ConfigError(fmt::format("{}:{}: no valid YAML: {}", name, e.mark.line + 1, e.msg));
   }
@@ -149,6 +180,7 @@ bool Reader::boolean_or(std::string_view key, bool fallback) {
 std::string Reader::text(std::string_view key) {
   const YAML::Node value = required(key);
   if (!value.IsScalar()) fail(key, "must be a single text");
+  if (const std::string fault = text_fault(value.Scalar()); !fault.empty()) fail(key, fault);
   return value.Scalar();
 }
 
@@ -202,6 +234,7 @@ std::vector<std::string> Reader::texts(std::string_view key) {
   if (value.IsSequence()) {
     for (const auto& item : value) {
       if (!item.IsScalar()) fail(key, "must be a list of texts");
+      if (const std::string fault = text_fault(item.Scalar()); !fault.empty()) fail(key, fault);
       result.push_back(item.Scalar());
     }
     return result;

@@ -4,6 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "ensonify/generators/json_text.hpp"
 #include "ensonify/output/atomic_file.hpp"
 
 namespace ensonify {
@@ -39,7 +40,7 @@ void write_dataset_card(const DatasetPaths& paths, const json& manifest) {
       paths.root / "README.md",
       fmt::format(
           R"(---
-pretty_name: "{title}"
+pretty_name: {quoted_title}
 task_categories:
 - image-segmentation
 - image-to-image
@@ -80,6 +81,8 @@ The same tool version, recipe, seed and `--isa {isa}` give the same pixels on an
 
 Content hash (SHA-256 over decoded pixels, metadata and grids): `{hash}`
 )",
+          // JSON's quoting is YAML's too.
+          fmt::arg("quoted_title", manifest["recipe"]["title"].dump()),
           fmt::arg("title", manifest["recipe"]["title"].get<std::string>()), fmt::arg("size", size_category(frames)),
           fmt::arg("configs", configs), fmt::arg("sonar", sonar["title"].get<std::string>()),
           fmt::arg("version", ENSONIFY_VERSION), fmt::arg("threshold", manifest["mask"]["threshold"].get<int>()),
@@ -127,7 +130,7 @@ void write_croissant(const DatasetPaths& paths, const json& manifest) {
       {"distribution", distribution},
       {"recordSet",
        json::array({{{"@type", "cr:RecordSet"}, {"@id", "frames"}, {"name", "frames"}, {"field", fields}}})}};
-  write_file(paths.root / "croissant.json", croissant.dump(1) + "\n");
+  write_file(paths.root / "croissant.json", json_text(croissant));
 }
 
 }  // namespace ensonify

@@ -6,6 +6,7 @@
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/generators/dataset_reader.hpp"
+#include "ensonify/generators/json_text.hpp"
 
 namespace ensonify {
 namespace {
@@ -33,7 +34,7 @@ Pose pose_of(const json& line, const char* key) {
 }
 
 FrameInfo info_of(const std::string& text, int split, int number) {
-  const json line = json::parse(text);
+  const json line = parse_json(text, "metadata.jsonl");
   FrameInfo info;
   info.split = split;
   info.number = number;

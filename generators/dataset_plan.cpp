@@ -7,6 +7,7 @@
 #include "ensonify/config/library.hpp"
 #include "ensonify/core/error.hpp"
 #include "ensonify/generators/describe.hpp"
+#include "ensonify/generators/json_text.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/sha256.hpp"
 
@@ -15,8 +16,9 @@ namespace {
 
 namespace fs = std::filesystem;
 /// In the order of removal: first what says that the set, or a part of it, is there.
-constexpr std::array own_entries{"dataset.json", ".ensonify/blocks", "train",          "val",      "test",
-                                 "grids",        "README.md",        "croissant.json", ".ensonify"};
+constexpr std::array own_entries{
+    "dataset.json", ".ensonify/blocks", "train",          "val",           "test",
+    "grids",        "README.md",        "croissant.json", "checksums.txt", ".ensonify/failed.jsonl"};
 
 bool holds_more_than_state(const DatasetPaths& paths) {
   std::error_code error;
@@ -63,7 +65,7 @@ std::string plan_json(const FrameMaker& maker, const std::string& isa, SampleFor
     const auto* recorded = trajectory ? std::get_if<RecordedPath>(&trajectory->path) : nullptr;
     if (recorded) plan["trajectory_sha256"][split.name] = Sha256().add(read_file(recorded->file)).hex();
   }
-  return plan.dump(1);
+  return json_text(plan);
 }
 
 fs::path DatasetPaths::block(int index) const { return state() / "blocks" / fmt::format("{:06}.json", index); }
@@ -82,29 +84,40 @@ fs::path DatasetPaths::grid(const std::string& place, const std::string& extensi
   return root / "grids" / (place + extension);
 }
 
-void prepare_dataset(const DatasetPaths& paths, const std::string& plan, bool force) {
+FolderLock prepare_dataset(const DatasetPaths& paths, const std::string& plan, bool force) {
   std::error_code error;
+  const std::string out = paths.root.string();
   if (paths.root.empty()) throw ConfigError("--out: must name a folder");
+  if (fs::is_symlink(paths.root, error) && !fs::exists(paths.root, error)) {
+    throw ConfigError(fmt::format("--out {}: is a link that leads nowhere", out));
+  }
+  if (fs::exists(paths.root, error) && !fs::is_directory(paths.root, error)) {
+    throw ConfigError(fmt::format("--out {}: is a file, not a folder", out));
+  }
   // In this order: another shard that starts now writes its plan before anything else.
   const bool in_use = holds_more_than_state(paths);
-  const bool ours = fs::is_regular_file(paths.plan(), error);
-  if (fs::exists(paths.root, error) && !fs::is_directory(paths.root, error)) {
-    throw ConfigError(fmt::format("--out {}: is a file, not a folder", paths.root.string()));
+  if (!fs::is_regular_file(paths.plan(), error) && in_use) {
+    throw ConfigError(fmt::format("--out {}: holds other files; name a new or empty folder", out));
   }
-  if (!ours && in_use) {
-    throw ConfigError(fmt::format("--out {}: holds other files; name a new or empty folder", paths.root.string()));
-  }
-  const bool another = ours && read_text(paths.plan()) != plan;
-  if (another && !force) {
+  FolderLock lock(paths.state() / "lock");
+  const auto is_ours = [&] { return write_new_file(paths.plan(), plan) || read_text(paths.plan()) == plan; };
+  if (is_ours()) return lock;
+  if (!force) {
     throw ConfigError(
         fmt::format("--out {}: holds a dataset of another recipe, seed, ISA or format; name another folder, or replace "
                     "it with --force",
-                    paths.root.string()));
+                    out));
   }
-  if (another) {
-    for (const char* entry : own_entries) fs::remove_all(paths.root / entry, error);
+  if (!lock.hold_alone()) {
+    throw ConfigError(
+        fmt::format("--out {}: another process works in it; stop that one first, or name another folder", out));
   }
+  for (const char* entry : own_entries) fs::remove_all(paths.root / entry, error);
   write_file(paths.plan(), plan);
+  lock.share();
+  // Another one may have held the folder alone before the share was back.
+  if (!is_ours()) throw ConfigError(fmt::format("--out {}: is being replaced by another process", out));
+  return lock;
 }
 
 }  // namespace ensonify

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ensonify/generators/frame.hpp"
+#include "ensonify/output/folder_lock.hpp"
 
 namespace ensonify {
 
@@ -33,6 +34,7 @@ struct DatasetPaths {
   std::filesystem::path manifest() const { return root / "dataset.json"; }
   std::filesystem::path state() const { return root / ".ensonify"; }
   std::filesystem::path plan() const { return state() / "plan.json"; }
+  std::filesystem::path checksums() const { return root / "checksums.txt"; }
   std::filesystem::path block(int index) const;
   std::filesystem::path observed(int block) const;
   std::filesystem::path image(const std::string& split, const std::string& kind, int number) const;
@@ -41,7 +43,8 @@ struct DatasetPaths {
 };
 
 /// Makes the folder ready for this plan: new, or holding the same plan (then the work resumes). `force` first removes
-/// a dataset of another plan. Throws ConfigError where the folder holds something else.
-void prepare_dataset(const DatasetPaths& paths, const std::string& plan, bool force);
+/// a dataset of another plan. Throws ConfigError where the folder holds something else, or where another process works
+/// on what `force` would remove. Keep the lock while working in the folder.
+[[nodiscard]] FolderLock prepare_dataset(const DatasetPaths& paths, const std::string& plan, bool force);
 
 }  // namespace ensonify

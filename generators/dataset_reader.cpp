@@ -10,6 +10,7 @@
 
 #include "ensonify/core/echo.hpp"
 #include "ensonify/core/error.hpp"
+#include "ensonify/generators/json_text.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/png.hpp"
 #include "ensonify/output/tar_shard.hpp"
@@ -37,8 +38,19 @@ std::vector<DatasetPlace> places_of(const json& split) {
 
 /// A split's name becomes part of paths.
 void check_split_name(const std::string& name) {
-  const bool plain = std::all_of(name.begin(), name.end(), [](char c) { return std::islower(c) || c == '_'; });
-  if (name.empty() || !plain) refuse_manifest(fmt::format("a split is named \"{}\"", name));
+  if (name == "train" || name == "val" || name == "test") return;
+  refuse_manifest(fmt::format("no split '{}'; there are train, val and test", name.substr(0, 40)));
+}
+
+constexpr std::size_t max_manifest_bytes = std::size_t{1} << 28;
+constexpr int max_frames = 100'000'000;
+
+int whole_number(const json& value, int low, int high) {
+  if (!value.is_number_unsigned() || value.get<std::uint64_t>() < static_cast<std::uint64_t>(low) ||
+      value.get<std::uint64_t>() > static_cast<std::uint64_t>(high)) {
+    refuse_manifest(fmt::format("{} is no whole number from {} to {}", value.dump().substr(0, 40), low, high));
+  }
+  return value.get<int>();
 }
 
 std::vector<DatasetSplit> splits_of(const json& manifest) {
@@ -50,8 +62,7 @@ std::vector<DatasetSplit> splits_of(const json& manifest) {
       splits.push_back({name, 0, places_of(manifest.at("recipe").at("splits").at(name)), {}});
     }
     DatasetSplit& split = splits.back();
-    const int frames = shard.at("frames");
-    if (frames < 1 || frames > 100'000'000 - split.frames) refuse_manifest(fmt::format("a shard of {} frames", frames));
+    const int frames = whole_number(shard.at("frames"), 1, max_frames - split.frames);
     split.blocks.push_back({static_cast<int>(splits.size()) - 1, static_cast<int>(split.blocks.size()), split.frames,
                             frames, shard.at("sha256")});
     split.frames += frames;
@@ -59,7 +70,7 @@ std::vector<DatasetSplit> splits_of(const json& manifest) {
   const json& counts = manifest.at("counts");
   if (splits.empty() || counts.size() != splits.size()) refuse_manifest("counts and shards name other splits");
   for (const DatasetSplit& split : splits) {
-    const int expected = counts.at(split.name);
+    const int expected = whole_number(counts.at(split.name), 1, max_frames);
     if (split.frames != expected) {
       refuse_manifest(
           fmt::format("{}: the shards of the manifest hold {} frames, not {}", split.name, split.frames, expected));
@@ -69,20 +80,22 @@ std::vector<DatasetSplit> splits_of(const json& manifest) {
 }
 
 void read_manifest(Dataset& dataset) {
-  const json manifest = json::parse(dataset.manifest);
+  const json manifest = parse_json(dataset.manifest, "dataset.json");
   const json& recipe = manifest.at("recipe");
   dataset.name = recipe.at("name");
   dataset.title = recipe.at("title");
   dataset.root_hash = manifest.at("root_hash");
-  dataset.format = manifest.at("format") == "webdataset" ? SampleFormat::webdataset : SampleFormat::folder;
-  dataset.mask_threshold = manifest.at("mask").at("threshold");
+  const std::string format = manifest.at("format");
+  if (format != "folder" && format != "webdataset") refuse_manifest("the format is neither folder nor webdataset");
+  dataset.format = format == "webdataset" ? SampleFormat::webdataset : SampleFormat::folder;
+  dataset.mask_threshold = whole_number(manifest.at("mask").at("threshold"), 0, 255);
   const json& sonar = manifest.at("sonar");
-  dataset.raw_bits = sonar.at("receive").at("bits");
+  dataset.raw_bits = whole_number(sonar.at("receive").at("bits"), 8, 16);
   dataset.beams = static_cast<int>(sonar.at("beam_azimuth_rad").size());
   // A recipe may draw the range window a frame, and then the number of native bins may differ.
   const json& window = recipe.at("sonar");
   const bool varies = window.contains("range_max_m") && window["range_max_m"].is_object();
-  dataset.range_bins = varies ? 0 : sonar.at("range_bins").get<int>();
+  dataset.range_bins = varies ? 0 : whole_number(sonar.at("range_bins"), 1, 1 << 20);
   dataset.splits = splits_of(manifest);
 }
 
@@ -158,7 +171,7 @@ Dataset open_dataset(const fs::path& folder) {
     throw DataError(fmt::format(
         "{}: no dataset.json: no dataset, or an unfinished one; run generate again to finish it", folder.string()));
   }
-  dataset.manifest = read_text(manifest);
+  dataset.manifest = read_text(manifest, max_manifest_bytes);
   try {
     read_manifest(dataset);
   } catch (const json::exception& e) {

@@ -3,6 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <cstring>
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -11,6 +13,7 @@
 #include "ensonify/core/parallel.hpp"
 #include "ensonify/generators/dataset_card.hpp"
 #include "ensonify/generators/describe.hpp"
+#include "ensonify/generators/json_text.hpp"
 #include "ensonify/generators/write_block.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/grid_files.hpp"
@@ -57,14 +60,12 @@ std::vector<std::vector<bool>> observed_of_places(const FrameMaker& maker, const
 }
 
 std::string write_grids(const DatasetPaths& paths, const std::string& place, const OccupancyGrid& grid) {
-  write_grid(grid, paths.grid(place, ".npz"));
-  write_grid(grid, paths.grid(place, ".bt"));
-  write_grid(grid, paths.grid(place, ".pgm"));
+  for (const char* extension : {".npz", ".bt", ".pgm"}) write_grid(grid, paths.grid(place, extension));
   return Sha256().add(grid.occupancy).add(grid.observable).hex();
 }
 
-void write_trajectories(const FrameMaker& maker, const DatasetPaths& paths,
-                        const std::vector<std::vector<int>>& frames) {
+void write_trajectories(const FrameMaker& maker, const DatasetPaths& paths, const std::vector<std::vector<int>>& frames,
+                        std::vector<std::filesystem::path>& files) {
   for (std::size_t place = 0; place < frames.size(); ++place) {
     std::vector<StampedPose> truth;
     std::vector<StampedPose> estimate;
@@ -78,15 +79,23 @@ void write_trajectories(const FrameMaker& maker, const DatasetPaths& paths,
     }
     if (truth.empty()) continue;
     const auto folder = paths.root / split / "trajectories";
-    write_tum(folder / (maker.places()[place].name + ".txt"), truth);
-    write_tum(folder / (maker.places()[place].name + "_est.txt"), estimate);
+    files.push_back(folder / (maker.places()[place].name + ".txt"));
+    write_tum(files.back(), truth);
+    files.push_back(folder / (maker.places()[place].name + "_est.txt"));
+    write_tum(files.back(), estimate);
   }
+}
+
+void close_written(std::ofstream& out, const std::filesystem::path& file) {
+  errno = 0;
+  out.close();
+  if (!out) throw disk_error(file, errno != 0 ? std::strerror(errno) : "the disk does not take it");
 }
 
 /// Writes metadata.jsonl of every split from the block records; returns a manifest entry a block, and adds every
 /// frame's hash to `root`.
-json write_metadata(const FrameMaker& maker, const DatasetPaths& paths, const std::vector<Block>& blocks,
-                    Sha256& root) {
+json write_metadata(const FrameMaker& maker, const DatasetPaths& paths, const std::vector<Block>& blocks, Sha256& root,
+                    std::vector<std::filesystem::path>& files) {
   json shards = json::array();
   for (std::size_t s = 0; s < maker.recipe().splits.size(); ++s) {
     const std::string& split = maker.recipe().splits[s].name;
@@ -96,7 +105,7 @@ json write_metadata(const FrameMaker& maker, const DatasetPaths& paths, const st
       for (const Block& block : blocks) {
         if (block.split != static_cast<int>(s)) continue;
         Sha256 hash;
-        for (const FrameRecord& record : read_block_record(paths, block)) {
+        for (const FrameRecord& record : read_block_record(paths, block).frames) {
           out << record.line << '\n';
           hash.add(std::string_view(record.sha256));
           root.add(std::string_view(record.sha256));
@@ -104,10 +113,27 @@ json write_metadata(const FrameMaker& maker, const DatasetPaths& paths, const st
         shards.push_back(
             {{"split", split}, {"first_index", block.first}, {"frames", block.frames}, {"sha256", hash.hex()}});
       }
-      if (!out.flush()) throw DataError(fmt::format("{}: can not be written", file.string()));
+      close_written(out, file);
     });
+    files.push_back(file);
   }
   return shards;
+}
+
+/// Writes checksums.txt, as `sha256sum -c` reads it: the files of the blocks, then `others`. Returns its own hash.
+std::string write_checksums(const DatasetPaths& paths, const std::vector<Block>& blocks,
+                            const std::vector<std::filesystem::path>& others) {
+  write_atomically(paths.checksums(), [&](const std::filesystem::path& temporary) {
+    std::ofstream out(temporary, std::ios::binary);
+    for (const Block& block : blocks) {
+      for (const WrittenFile& f : read_block_record(paths, block).files) out << f.sha256 << "  " << f.name << '\n';
+    }
+    for (const auto& file : others) {
+      out << sha256_of_file(file) << "  " << file.lexically_relative(paths.root).generic_string() << '\n';
+    }
+    close_written(out, paths.checksums());
+  });
+  return sha256_of_file(paths.checksums());
 }
 
 /// How each trajectory moves: one entry a place.
@@ -151,7 +177,8 @@ bool finish_dataset(const FrameMaker& maker, const DatasetPaths& paths, const st
   };
 
   Sha256 root;
-  json shards = write_metadata(maker, paths, blocks, root);
+  std::vector<std::filesystem::path> files;  // beside those of the blocks
+  json shards = write_metadata(maker, paths, blocks, root, files);
   const std::vector<std::vector<bool>> seen = observed_of_places(maker, paths, blocks);
   std::vector<std::string> hashes(maker.places().size());
   parallel_for(places, [&](int place) {
@@ -166,10 +193,11 @@ bool finish_dataset(const FrameMaker& maker, const DatasetPaths& paths, const st
   json grids = json::array();
   for (std::size_t p = 0; p < hashes.size(); ++p) {
     const std::string& name = maker.places()[p].name;
+    for (const char* extension : {".npz", ".bt", ".pgm", ".yaml"}) files.push_back(paths.grid(name, extension));
     root.add(std::string_view(hashes[p]));
     grids.push_back({{"place", name}, {"file", "grids/" + name + ".npz"}, {"sha256", hashes[p]}});
   }
-  write_trajectories(maker, paths, frames);
+  write_trajectories(maker, paths, frames, files);
 
   json manifest{{"schema", "ensonify-dataset"},
                 {"schema_version", 1},
@@ -191,7 +219,10 @@ bool finish_dataset(const FrameMaker& maker, const DatasetPaths& paths, const st
   remove_abandoned(paths.root);
   write_dataset_card(paths, manifest);
   write_croissant(paths, manifest);
-  write_file(paths.manifest(), manifest.dump(1) + "\n");
+  files.insert(files.end(), {paths.root / "README.md", paths.root / "croissant.json"});
+  manifest["checksums"] = {{"file", paths.checksums().filename().string()},
+                           {"sha256", write_checksums(paths, blocks, files)}};
+  write_file(paths.manifest(), sealed_manifest(manifest));
   return true;
 }
 

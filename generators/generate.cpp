@@ -16,11 +16,6 @@
 namespace ensonify {
 namespace {
 
-bool is_done(const DatasetPaths& paths, const Block& block) {
-  std::error_code error;
-  return std::filesystem::is_regular_file(paths.block(block.index), error);
-}
-
 /// A trajectory into a wall is a mistake in the configuration: found before any work is done.
 void check_trajectories(const FrameMaker& maker) {
   int place = 0;
@@ -29,6 +24,17 @@ void check_trajectories(const FrameMaker& maker) {
       if (std::holds_alternative<TrajectoryPoses>(split.poses)) maker.check_trajectory(place);
     }
   }
+}
+
+[[noreturn]] void refuse_lost_files(const DatasetPaths& paths) {
+  throw DiskError(
+      fmt::format("{}: files that this run wrote are gone: someone clears the folder; run again", paths.root.string()));
+}
+
+/// A folder that is removed meanwhile would be made again by the next file, and hold a part of the set for ever.
+void check_folder(const DatasetPaths& paths) {
+  std::error_code no_throw;
+  if (!std::filesystem::is_regular_file(paths.plan(), no_throw)) refuse_lost_files(paths);
 }
 
 struct Failure {
@@ -58,7 +64,7 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
     throw ConfigError("truth: true writes EXR files, which WebDataset shards do not hold; use --format folder");
   }
   const DatasetPaths paths{options.out};
-  prepare_dataset(paths, plan_json(maker, options.isa, options.format), options.force);
+  const FolderLock in_use = prepare_dataset(paths, plan_json(maker, options.isa, options.format), options.force);
   std::error_code no_throw;
   if (std::filesystem::is_regular_file(paths.manifest(), no_throw)) return Outcome::complete;
   check_trajectories(maker);
@@ -80,7 +86,8 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
   std::vector<Failure> failures;
   std::atomic<bool> stopped = false;
   const auto after_frame = [&] {
-    const std::scoped_lock lock(mutex);
+    check_folder(paths);
+    const std::scoped_lock guard(mutex);
     ++progress.done;
     ++progress.fresh;
     options.on_progress(progress);
@@ -91,6 +98,9 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
     if (stopped) return;
     try {
       write_block(maker, paths, missing[static_cast<std::size_t>(i)], options.format, after_frame);
+    } catch (const DiskError&) {
+      stopped = true;  // no other frame would fare better
+      throw;
     } catch (const DataError& e) {
       const std::scoped_lock lock(mutex);
       failures.push_back({missing[static_cast<std::size_t>(i)].index, e.what()});
@@ -99,9 +109,13 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
   if (!failures.empty()) report_failures(paths, std::move(failures));
   std::filesystem::remove(failures_file(paths), no_throw);  // of an earlier run
   if (stopped) return Outcome::stopped;
-  if (!std::all_of(blocks.begin(), blocks.end(), [&](const Block& b) { return is_done(paths, b); })) {
-    return Outcome::shard_done;
+  bool all_done = true;
+  for (const Block& block : blocks) {
+    if (is_done(paths, block)) continue;
+    if (block.index % options.shards == options.shard) refuse_lost_files(paths);
+    all_done = false;
   }
+  if (!all_done) return Outcome::shard_done;
   return finish_dataset(maker, paths, blocks, options) ? Outcome::complete : Outcome::stopped;
 }
 
@@ -112,9 +126,10 @@ std::string generate_only(const Recipe& recipe, const GenerateOptions& options, 
   const FrameMaker maker(recipe, options.isa);
   const DatasetPaths paths{options.out};
   constexpr bool replace = false;  // a whole set is not given up for one frame
-  prepare_dataset(paths, plan_json(maker, options.isa, SampleFormat::folder), replace);
+  const FolderLock in_use = prepare_dataset(paths, plan_json(maker, options.isa, SampleFormat::folder), replace);
   maker.check_trajectory(maker.locate(index).place);
-  return write_frame(maker, paths, maker.make(index)).line;
+  std::vector<WrittenFile> files;
+  return write_frame(maker, paths, maker.make(index), files).line;
 }
 
 }  // namespace ensonify

@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <numeric>
 #include <set>
+#include <string_view>
 
 #include "ensonify/config/library.hpp"
 #include "ensonify/config/reader.hpp"
@@ -23,11 +25,28 @@ std::string beside(const Reader& reader, const std::string& word) {
   return std::filesystem::is_regular_file(path, no_throw) ? path.string() : word;
 }
 
+/// The stem of a scene's file, which names files of the dataset.
+std::string place_name(const Reader& entry, const std::string& scene) {
+  constexpr std::size_t longest = 100;
+  const std::string stem = std::filesystem::path(scene).stem().string();
+  const bool harmless = std::none_of(stem.begin(), stem.end(), [](unsigned char c) {
+    return c <= ' ' || c == 127 ||
+           std::string_view("\\\"'*?:<>|/").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (stem.empty() || stem.size() > longest || stem[0] == '.' || stem[0] == '-' || !harmless) {
+    entry.fail("scene", fmt::format("the file name, without extension, names files of the dataset: it must be 1 to {} "
+                                    "bytes without blanks, control characters or any of \\ \" ' * ? : < > |, and not "
+                                    "begin with . or -",
+                                    longest));
+  }
+  return stem;
+}
+
 std::vector<PlaceRef> read_places(Reader& split) {
   std::vector<PlaceRef> places;
   for (Reader& entry : split.children("places")) {
     const std::string scene = beside(entry, entry.text("scene"));
-    const std::string stem = std::filesystem::path(scene).stem().string();
+    const std::string stem = place_name(entry, scene);
     const std::vector<double> layouts =
         entry.has("layouts") ? entry.numbers("layouts", -1, {0.0, 1e9}) : std::vector<double>{0.0};
     if (layouts.empty()) entry.fail("layouts", "needs at least one layout number");

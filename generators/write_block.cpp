@@ -8,6 +8,7 @@
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/generators/describe.hpp"
+#include "ensonify/generators/json_text.hpp"
 #include "ensonify/generators/truth_channels.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/png.hpp"
@@ -41,10 +42,23 @@ FrameRecord record_of(const FrameMaker& maker, const Frame& frame, const FramePi
   return {frame.pose.index, std::move(hash), std::move(line)};
 }
 
-void write_record(const DatasetPaths& paths, const Block& block, const std::vector<FrameRecord>& records) {
+void write_record(const DatasetPaths& paths, const Block& block, const BlockRecord& record) {
   json frames = json::array();
-  for (const FrameRecord& r : records) frames.push_back({{"index", r.index}, {"sha256", r.sha256}, {"line", r.line}});
-  write_file(paths.block(block.index), json{{"frames", frames}}.dump());
+  for (const FrameRecord& r : record.frames) {
+    frames.push_back({{"index", r.index}, {"sha256", r.sha256}, {"line", r.line}});
+  }
+  json files = json::array();
+  for (const WrittenFile& f : record.files)
+    files.push_back({{"name", f.name}, {"bytes", f.bytes}, {"sha256", f.sha256}});
+  write_file(paths.block(block.index), json{{"frames", frames}, {"files", files}}.dump());
+}
+
+/// What lies at `path` now that it is written.
+WrittenFile written(const DatasetPaths& paths, const std::filesystem::path& path) {
+  std::error_code error;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, error);
+  if (error) throw disk_error(path, error.message());
+  return {path.lexically_relative(paths.root).generic_string(), bytes, sha256_of_file(path)};
 }
 
 }  // namespace
@@ -96,19 +110,26 @@ std::string content_hash(const FramePixels& pixels, const std::string& line) {
       .hex();
 }
 
-FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, const Frame& frame) {
+FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, const Frame& frame,
+                        std::vector<WrittenFile>& files) {
   const FramePixels pixels = pixels_of(frame);
   const std::string& split = maker.recipe().splits[static_cast<std::size_t>(frame.pose.split)].name;
-  for (const auto& [kind, png] : encode(pixels)) write_file(paths.image(split, kind, frame.pose.number), png);
+  for (const auto& [kind, png] : encode(pixels)) {
+    const auto file = paths.image(split, kind, frame.pose.number);
+    write_file(file, png);
+    files.push_back({file.lexically_relative(paths.root).generic_string(), png.size(), Sha256().add(png).hex()});
+  }
   if (maker.recipe().cell_truth) {
-    write_exr(paths.image(split, "truth", frame.pose.number), truth_channels(frame.echo, frame.truth), truth_comment);
+    const auto file = paths.image(split, "truth", frame.pose.number);
+    write_exr(file, truth_channels(frame.echo, frame.truth), truth_comment);
+    files.push_back(written(paths, file));
   }
   return record_of(maker, frame, pixels);
 }
 
 bool write_block(const FrameMaker& maker, const DatasetPaths& paths, const Block& block, SampleFormat format,
                  const std::function<bool()>& after_frame) {
-  std::vector<FrameRecord> records;
+  BlockRecord record;
   std::vector<ObservedCells> observed;
   const std::string& split = maker.recipe().splits[static_cast<std::size_t>(block.split)].name;
   std::optional<TarShard> tar;
@@ -122,39 +143,54 @@ bool write_block(const FrameMaker& maker, const DatasetPaths& paths, const Block
       for (const auto& [kind, png] : encode(pixels)) {
         tar->add(fmt::format("{:06}.{}.png", frame.pose.number, kind), png);
       }
-      records.push_back(record_of(maker, frame, pixels));
-      const std::string& line = records.back().line;
+      record.frames.push_back(record_of(maker, frame, pixels));
+      const std::string& line = record.frames.back().line;
       tar->add(fmt::format("{:06}.json", frame.pose.number),
                {reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
     } else {
-      records.push_back(write_frame(maker, paths, frame));
+      record.frames.push_back(write_frame(maker, paths, frame, record.files));
     }
     if (!after_frame()) return false;
   }
-  if (tar) tar->finish();
+  if (tar) {
+    tar->finish();
+    record.files.push_back(written(paths, paths.tar(split, block.number_in_split)));
+  }
   write_file(paths.observed(block.index), pack(observed));
-  write_record(paths, block, records);
+  write_record(paths, block, record);
   return true;
 }
 
-std::vector<FrameRecord> read_block_record(const DatasetPaths& paths, const Block& block) {
-  std::error_code error;
+BlockRecord read_block_record(const DatasetPaths& paths, const Block& block) {
   const auto file = paths.block(block.index);
-  if (!std::filesystem::is_regular_file(file, error)) return {};
-  std::vector<FrameRecord> records;
+  BlockRecord result;
   try {
-    const json record = json::parse(read_text(file));
+    const json record = parse_json(read_text(file), file);
     for (const json& frame : record.at("frames")) {
-      records.push_back({frame.at("index"), frame.at("sha256"), frame.at("line")});
+      result.frames.push_back({frame.at("index"), frame.at("sha256"), frame.at("line")});
     }
+    for (const json& f : record.at("files")) result.files.push_back({f.at("name"), f.at("bytes"), f.at("sha256")});
   } catch (const json::exception& e) {
     throw DataError(fmt::format("{}: broken record: {}; delete it to make the block again", file.string(), e.what()));
   }
-  if (static_cast<int>(records.size()) != block.frames) {
+  if (static_cast<int>(result.frames.size()) != block.frames) {
     throw DataError(fmt::format("{}: {} frames recorded, {} expected; delete it to make the block again", file.string(),
-                                records.size(), block.frames));
+                                result.frames.size(), block.frames));
   }
-  return records;
+  return result;
+}
+
+bool is_done(const DatasetPaths& paths, const Block& block) {
+  try {
+    const BlockRecord record = read_block_record(paths, block);
+    std::error_code error;
+    if (!std::filesystem::is_regular_file(paths.observed(block.index), error)) return false;
+    return std::all_of(record.files.begin(), record.files.end(), [&](const WrittenFile& f) {
+      return std::filesystem::file_size(paths.root / f.name, error) == f.bytes && !error;
+    });
+  } catch (const DataError&) {
+    return false;  // no record, or a broken one: the block is made anew
+  }
 }
 
 std::vector<ObservedCells> read_observed(const DatasetPaths& paths, const Block& block) {

@@ -23,16 +23,32 @@ struct FrameRecord {
   std::string line;
 };
 
-/// Writes the files of one frame in a folder dataset; returns its record.
-FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, const Frame& frame);
+/// A file as it was written: its name in the dataset, and the SHA-256 of its bytes.
+struct WrittenFile {
+  std::string name;
+  std::uintmax_t bytes = 0;
+  std::string sha256;
+};
+
+struct BlockRecord {
+  std::vector<FrameRecord> frames;
+  std::vector<WrittenFile> files;
+};
+
+/// Writes the files of one frame in a folder dataset and adds them to `files`; returns its record.
+FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, const Frame& frame,
+                        std::vector<WrittenFile>& files);
 
 /// Makes and writes a block, then what it observed and its record in the state folder, which marks it as done. Calls
 /// after_frame() after each; where that returns false, stops and returns false, and the block counts as not done.
 bool write_block(const FrameMaker& maker, const DatasetPaths& paths, const Block& block, SampleFormat format,
                  const std::function<bool()>& after_frame);
 
-/// The record of a finished block; empty where it is not finished. Throws DataError on a broken record.
-std::vector<FrameRecord> read_block_record(const DatasetPaths& paths, const Block& block);
+/// The record of a finished block. Throws DataError where there is none, or a broken one.
+BlockRecord read_block_record(const DatasetPaths& paths, const Block& block);
+
+/// Whether a block has its record, and the files that it names are there in their full length.
+bool is_done(const DatasetPaths& paths, const Block& block);
 
 /// What the frames of a finished block observed. Throws DataError where that is missing or broken.
 std::vector<ObservedCells> read_observed(const DatasetPaths& paths, const Block& block);

@@ -41,7 +41,7 @@ void write_exr(const std::filesystem::path& path, const std::vector<Channel>& ch
       file.setFrameBuffer(buffer);
       file.writePixels(rows);
     } catch (const std::exception& e) {
-      throw DataError(fmt::format("{}: can not be written: {}", path.string(), e.what()));
+      throw disk_error(path, e.what());
     }
   });
 }

@@ -4,7 +4,7 @@
 #include <archive_entry.h>
 #include <fmt/format.h>
 
-#include <exception>
+#include <cstring>
 #include <memory>
 
 #include "ensonify/core/error.hpp"
@@ -25,7 +25,13 @@ std::string reason(archive* zip) {
   return text ? text : "unknown error";
 }
 
-void write_entry(archive* zip, const std::string& name, const std::string& bytes) {
+/// What the disk says; libarchive's own text is only "Write error".
+DiskError write_error(const std::filesystem::path& path, archive* zip) {
+  const int error = archive_errno(zip);
+  return disk_error(path, error > 0 ? std::strerror(error) : reason(zip));
+}
+
+void write_entry(archive* zip, const std::filesystem::path& path, const std::string& name, const std::string& bytes) {
   const Entry entry(archive_entry_new(), archive_entry_free);
   archive_entry_set_pathname(entry.get(), name.c_str());
   archive_entry_set_filetype(entry.get(), AE_IFREG);
@@ -35,7 +41,7 @@ void write_entry(archive* zip, const std::string& name, const std::string& bytes
   archive_entry_set_mtime(entry.get(), 0, 0);
   if (archive_write_header(zip, entry.get()) != ARCHIVE_OK ||
       archive_write_data(zip, bytes.data(), bytes.size()) != static_cast<la_ssize_t>(bytes.size())) {
-    throw DataError(reason(zip));
+    throw write_error(path, zip);
   }
 }
 
@@ -66,20 +72,18 @@ void write_npz(const std::filesystem::path& path, const std::map<std::string, Np
     archive_write_set_bytes_per_block(zip.get(), 1 << 20);
     archive_write_set_bytes_in_last_block(zip.get(), 1);  // no padding
     // Level 1: grids are mostly runs; higher levels cost several times as long for a few per cent.
-    try {
-      if (archive_write_set_options(zip.get(), "zip:compression=deflate,zip:compression-level=1") != ARCHIVE_OK ||
-          archive_write_open_filename(zip.get(), temporary.c_str()) != ARCHIVE_OK) {
-        throw DataError(reason(zip.get()));
-      }
-      for (const auto& [name, array] : arrays) write_entry(zip.get(), name + ".npy", to_npy(array));
-      if (archive_write_close(zip.get()) != ARCHIVE_OK) throw DataError(reason(zip.get()));
-    } catch (const DataError& error) {
-      throw DataError(fmt::format("can not write {}: {}", path.string(), error.what()));
+    if (archive_write_set_options(zip.get(), "zip:compression=deflate,zip:compression-level=1") != ARCHIVE_OK ||
+        archive_write_open_filename(zip.get(), temporary.c_str()) != ARCHIVE_OK) {
+      throw write_error(path, zip.get());
     }
+    for (const auto& [name, array] : arrays) write_entry(zip.get(), path, name + ".npy", to_npy(array));
+    if (archive_write_close(zip.get()) != ARCHIVE_OK) throw write_error(path, zip.get());
   });
 }
 
 std::map<std::string, NpyArray> read_npz(const std::filesystem::path& path, std::size_t max_array_bytes) {
+  std::error_code no_throw;
+  if (!std::filesystem::is_regular_file(path, no_throw)) throw broken(path, "no such file");
   const Archive zip(archive_read_new(), archive_read_free);
   archive_read_support_format_zip_seekable(zip.get());
   if (archive_read_open_filename(zip.get(), path.c_str(), 1 << 20) != ARCHIVE_OK) {

@@ -61,6 +61,22 @@ std::vector<std::uint8_t> encode(std::span<const std::uint8_t> scanlines, int wi
   return png;
 }
 
+/// Whether the chunks follow each other to the end of the file, each with its checksum. libpng pads a truncated image
+/// with zeros, overlooks what follows the end, and only warns.
+bool is_whole(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t around_data = 12;  // length, type, CRC
+  bytes = bytes.subspan(signature.size());
+  for (bool ended = false; !bytes.empty() || !ended;) {
+    if (ended || bytes.size() < around_data) return false;
+    const std::size_t data = get_u32(bytes.data());
+    if (data > bytes.size() - around_data) return false;
+    if (libdeflate_crc32(0, bytes.data() + 4, data + 4) != get_u32(bytes.data() + 8 + data)) return false;
+    ended = std::memcmp(bytes.data() + 4, "IEND", 4) == 0;
+    bytes = bytes.subspan(data + around_data);
+  }
+  return true;
+}
+
 }  // namespace
 
 std::vector<std::uint8_t> encode_png(const Image2<std::uint8_t>& image) {
@@ -110,11 +126,7 @@ Image2<Grey> decode_png(std::span<const std::uint8_t> bytes, const std::filesyst
   }
   const std::uint64_t pixels = std::uint64_t{get_u32(bytes.data() + 16)} * get_u32(bytes.data() + 20);
   if (pixels == 0 || pixels > (1u << 28)) throw DataError(fmt::format("{}: {} pixels", name.string(), pixels));
-  // libpng pads a truncated image with zeros and only warns; a whole file ends in IEND.
-  static constexpr std::array<std::uint8_t, 4> end_tag{'I', 'E', 'N', 'D'};
-  if (!std::equal(end_tag.begin(), end_tag.end(), bytes.end() - 8)) {
-    throw DataError(fmt::format("{}: the PNG file is cut short", name.string()));
-  }
+  if (!is_whole(bytes)) throw DataError(fmt::format("{}: the PNG file is cut short or damaged", name.string()));
   cv::Mat decoded;
   try {
     decoded = cv::imdecode(cv::Mat(1, static_cast<int>(bytes.size()), CV_8U, const_cast<std::uint8_t*>(bytes.data())),

@@ -4,6 +4,10 @@
 #include <openssl/evp.h>
 
 #include <array>
+#include <fstream>
+#include <vector>
+
+#include "ensonify/core/error.hpp"
 
 namespace ensonify {
 
@@ -34,6 +38,19 @@ std::string Sha256::hex() {
   std::string text;
   for (unsigned i = 0; i < length; ++i) text += fmt::format("{:02x}", digest[i]);
   return text;
+}
+
+std::string sha256_of_file(const std::filesystem::path& path) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) throw DataError(fmt::format("{}: no such file", path.string()));
+  std::ifstream in(path, std::ios::binary);
+  std::vector<char> piece(1 << 20);
+  Sha256 hash;
+  while (in.read(piece.data(), static_cast<std::streamsize>(piece.size())) || in.gcount() > 0) {
+    hash.add(std::string_view(piece.data(), static_cast<std::size_t>(in.gcount())));
+  }
+  if (!in.eof()) throw DataError(fmt::format("{}: can not be read", path.string()));
+  return hash.hex();
 }
 
 }  // namespace ensonify

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <memory>
 #include <span>
 #include <string>
@@ -21,5 +22,8 @@ class Sha256 {
   struct Context;
   std::shared_ptr<Context> context_;
 };
+
+/// Of the bytes of a file, a piece at a time. Throws DataError where it is no regular file or can not be read.
+std::string sha256_of_file(const std::filesystem::path& path);
 
 }  // namespace ensonify

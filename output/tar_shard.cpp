@@ -4,6 +4,8 @@
 #include <archive_entry.h>
 #include <fmt/format.h>
 
+#include <cstring>
+
 #include "ensonify/core/error.hpp"
 #include "ensonify/output/atomic_file.hpp"
 
@@ -18,6 +20,11 @@ constexpr la_int64_t max_member_bytes = la_int64_t{1} << 32;
   throw DataError(fmt::format("{}: {}", path.string(), reason != nullptr ? reason : "tar error"));
 }
 
+DiskError write_error(const fs::path& path, archive* a) {
+  const int error = archive_errno(a);
+  return disk_error(path, error > 0 ? std::strerror(error) : "tar error");
+}
+
 }  // namespace
 
 TarShard::TarShard(fs::path path)
@@ -26,9 +33,9 @@ TarShard::TarShard(fs::path path)
   fs::create_directories(path_.parent_path(), error);
   archive_write_set_format_ustar(archive_);
   if (archive_write_open_filename(archive_, temporary_.c_str()) != ARCHIVE_OK) {
-    const std::string reason = archive_error_string(archive_);
+    const DiskError reason = write_error(path_, archive_);
     archive_write_free(archive_);
-    throw DataError(fmt::format("{}: {}", path_.string(), reason));
+    throw reason;
   }
 }
 
@@ -48,21 +55,25 @@ void TarShard::add(const std::string& member, std::span<const std::uint8_t> byte
   archive_entry_set_mtime(entry.get(), 0, 0);
   if (archive_write_header(archive_, entry.get()) != ARCHIVE_OK ||
       archive_write_data(archive_, bytes.data(), bytes.size()) != static_cast<la_ssize_t>(bytes.size())) {
-    fail(path_, archive_);
+    throw write_error(path_, archive_);
   }
 }
 
 void TarShard::finish() {
-  if (archive_write_close(archive_) != ARCHIVE_OK) fail(path_, archive_);
+  if (archive_write_close(archive_) != ARCHIVE_OK) throw write_error(path_, archive_);
   archive_write_free(archive_);
   archive_ = nullptr;
-  std::error_code error;
+  std::error_code error, no_throw;
   fs::rename(temporary_, path_, error);
-  if (error) throw DataError(fmt::format("{}: {}", path_.string(), error.message()));
+  if (!error) return;
+  fs::remove(temporary_, no_throw);
+  throw disk_error(path_, error.message());
 }
 
 void read_tar(const fs::path& path,
               const std::function<void(const std::string&, const std::vector<std::uint8_t>&)>& visit) {
+  std::error_code no_throw;
+  if (!fs::is_regular_file(path, no_throw)) throw DataError(fmt::format("{}: no such file", path.string()));
   const std::unique_ptr<archive, decltype(&archive_read_free)> in(archive_read_new(), archive_read_free);
   archive_read_support_format_tar(in.get());
   if (archive_read_open_filename(in.get(), path.c_str(), 1 << 20) != ARCHIVE_OK) fail(path, in.get());

@@ -21,7 +21,7 @@ class TarShard {
   TarShard(const TarShard&) = delete;
   TarShard& operator=(const TarShard&) = delete;
 
-  /// Members that share the name up to the first dot form a sample. Throws DataError.
+  /// Members that share the name up to the first dot form a sample. Throws DiskError.
   void add(const std::string& member, std::span<const std::uint8_t> bytes);
   void finish();
 

@@ -11,6 +11,7 @@ namespace ensonify {
 namespace {
 
 constexpr std::size_t max_nesting = 64;
+constexpr std::size_t max_stride = 252;
 constexpr std::size_t max_node_index = 10'000'000;
 
 /// An open object or array of the JSON text.
@@ -69,6 +70,9 @@ std::string json_fault(std::string_view json) {
     } else if (c >= '0' && c <= '9') {
       std::size_t number = 0;
       const auto [rest, error] = std::from_chars(json.data() + i, json.data() + json.size(), number);
+      if (!levels.empty() && levels.back().key == "byteStride" && number > max_stride) {
+        return "a byteStride is larger than 252, the most that glTF allows";
+      }
       if (const auto parent = parent_node(levels); parent && error == std::errc()) {
         if (*parent > max_node_index) return "it has too many nodes";
         if (children.size() <= *parent) children.resize(*parent + 1);

@@ -14,6 +14,7 @@ namespace {
 
 constexpr int max_beams = 4096;
 constexpr int max_bins = 16384;
+constexpr int max_pixels = 1 << 24;  // a frame takes some 50 bytes a pixel while it is made
 constexpr Limits fan_width_deg{0.01, 179.0};
 
 Shading read_shading(Reader& reader, std::string_view key) {
@@ -72,6 +73,11 @@ void read_range(Reader range, const RangeWindow& window, SonarModel& sonar) {
   }
   if (g.range_bins < 1 || g.range_bins > max_bins) {
     range.fail("", fmt::format("the range window gives {} bins; it must be 1 to {}", g.range_bins, max_bins));
+  }
+  if (g.range_bins * g.beams() > max_pixels) {
+    range.fail("", fmt::format("{} bins x {} beams are more than the {} pixels that an image may have; ask for fewer "
+                               "bins (range_bins) or a shorter window",
+                               g.range_bins, g.beams(), max_pixels));
   }
 }
 

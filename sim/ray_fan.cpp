@@ -1,7 +1,11 @@
 #include "ensonify/sim/ray_fan.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
+
+#include "ensonify/core/error.hpp"
 
 namespace ensonify {
 namespace {
@@ -11,6 +15,8 @@ constexpr double least_two_way_db = -60.0;
 constexpr double bins_per_row = 3.0;
 constexpr int packet = 8;
 constexpr int max_elevation_rays = 8192;
+/// A ping keeps the first hit of every ray: 256 MiB at most. The densest bundled instrument casts 0.2 million.
+constexpr double max_rays = 1 << 26;
 /// Heights of the rays within a step, in steps; neighbouring columns far apart.
 constexpr std::array<double, RayFan::stagger> height_in_step{-0.375, 0.125, -0.125, 0.375};
 
@@ -73,6 +79,13 @@ RayFan::RayFan(const SonarModel& sonar) {
 
   const std::vector<double> edges = sonar.geometry.beam_edges_rad();
   rays_per_beam = choose_rays_per_beam(sonar, edges);
+  const double rays = 1.0 * sonar.geometry.beams() * rays_per_beam * elevation_rays;
+  if (rays > max_rays) {
+    throw ConfigError(
+        fmt::format("sonar {}: {} beams of {} x {} rays are {:.0f} million rays a ping, more than {:.0f} "
+                    "million; lower rays.azimuth_per_beam, rays.elevation or beams.count",
+                    sonar.name, sonar.geometry.beams(), rays_per_beam, elevation_rays, rays * 1e-6, max_rays * 1e-6));
+  }
   const double fan_edge = std::max(std::abs(edges.front()), std::abs(edges.back()));
   for (int b = 0; b < sonar.geometry.beams(); ++b) {
     // A lone beam has no neighbours to share the fan with: it is as wide as its pattern.

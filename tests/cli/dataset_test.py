@@ -237,14 +237,14 @@ class Verified(ProgramTest):
 
         table = {
             "missing image": (lambda c: (c / "train/mask/000003.png").unlink(), ["000003.png"]),
-            "swapped raw": (swap, ["differ from the manifest"]),
+            "swapped raw": (swap, ["differ from the manifest", "raw/000001.png", "raw/000002.png"]),
             "swapped masks": (lambda c: swap(c, "mask"), ["mask is not clean >="]),
             "cut image": (cut("test/clean/000001.png"), ["000001.png"]),
             "changed metadata": (edit("train/metadata.jsonl", '"noise":"paper"', '"noise":"none"'), ["differ"]),
             "missing metadata line": (lambda c: (c / "test/metadata.jsonl").write_text(""), ["test"]),
             "cut grid": (cut("grids/block_layout0.npz"), ["block_layout0.npz"]),
             "missing map": (lambda c: (c / "grids/block_layout0.bt").unlink(), ["block_layout0.bt"]),
-            "broken manifest": (cut("dataset.json"), ["broken manifest"]),
+            "broken manifest": (cut("dataset.json"), ["dataset.json", "no whole JSON"]),
             "another root hash": (edit("dataset.json", '"root_hash": "', '"root_hash": "0'), ["root"]),
         }
         for name, (change, fragments) in table.items():

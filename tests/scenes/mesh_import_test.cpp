@@ -216,6 +216,47 @@ TEST(MeshImport, RefusesTextNestedWithoutEnd) {
   expect_refused(scratch.write("deep.gltf", json));
 }
 
+/// Reads or refuses; anything else ends the test program.
+void expect_survived(const fs::path& file) {
+  try {
+    import_file(file);
+  } catch (const DataError& e) {
+    EXPECT_THAT(e.what(), HasSubstr(file.string()));
+  }
+}
+
+TEST(MeshImport, SurvivesAnyCutAndAnyFlippedBit) {
+  const ScratchFolder scratch;
+  scratch.write("box.bin", box_gltf_buffer());
+  const std::pair<const char*, std::string> wholes[] = {
+      {"a.obj", box_obj()},           {"a.ply", box_ply()},        {"b.ply", box_binary_ply()},
+      {"a.stl", box_stl_text()},      {"b.stl", box_stl_binary()}, {"a.dae", box_dae("<up_axis>Z_UP</up_axis>", "")},
+      {"a.gltf", box_gltf("box.bin")}};
+  for (const auto& [name, whole] : wholes) {
+    for (std::size_t part = 0; part < 16; ++part) {
+      expect_survived(scratch.write(name, whole.substr(0, whole.size() * part / 16)));
+    }
+    const std::size_t step = 1 + whole.size() / 200;
+    for (std::size_t i = 0; i < whole.size(); i += step) {
+      std::string flipped = whole;
+      flipped[i] = static_cast<char>(flipped[i] ^ 1 << i % 8);
+      expect_survived(scratch.write(name, flipped));
+    }
+  }
+}
+
+TEST(MeshImport, BoundsWhatItsParserIsSlowAtOrTrusts) {
+  const ScratchFolder scratch;
+  std::string comments = box_ply();
+  std::string many;
+  for (int i = 0; i < 90'000; ++i) many += "comment x\n";
+  expect_refused(scratch.write("comments.ply", comments.insert(comments.find("element"), many)));
+  scratch.write("box.bin", box_gltf_buffer());
+  std::string strided = box_gltf("box.bin");
+  expect_refused(
+      scratch.write("stride.gltf", strided.insert(strided.find("\"byteLength\":96"), "\"byteStride\":2147483648,")));
+}
+
 struct RealMesh {
   const char* file;
   Vec3 low_m, high_m;

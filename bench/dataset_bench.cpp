@@ -26,7 +26,7 @@ void frames_to_disk(benchmark::State& state) {
   constexpr int frames = 256;
   const int stride = maker.recipe().frames() / frames;
   for (auto _ : state) {
-    parallel_for(frames, [&](int i) { benchmark::DoNotOptimize(write_frame(maker, paths, i * stride)); });
+    parallel_for(frames, [&](int i) { benchmark::DoNotOptimize(write_frame(maker, paths, maker.make(i * stride))); });
   }
   fs::remove_all(paths.root);
   const double made = static_cast<double>(state.iterations()) * frames;

@@ -55,7 +55,7 @@ std::string plan_json(const FrameMaker& maker, const std::string& isa, SampleFor
     if (plan["scene_sha256"].contains(place.scene)) continue;
     Sha256 hash;
     hash.add(read_file(resolve_name("scenes", place.scene)));
-    for (const fs::path& mesh : load_scene(place.scene, place.layout).mesh_files) hash.add(read_file(mesh));
+    for (const fs::path& mesh : scene_mesh_files(place.scene)) hash.add(read_file(mesh));
     plan["scene_sha256"][place.scene] = hash.hex();
   }
   for (const Split& split : maker.recipe().splits) {
@@ -67,6 +67,8 @@ std::string plan_json(const FrameMaker& maker, const std::string& isa, SampleFor
 }
 
 fs::path DatasetPaths::block(int index) const { return state() / "blocks" / fmt::format("{:06}.json", index); }
+
+fs::path DatasetPaths::observed(int block) const { return state() / "observed" / fmt::format("{:06}.bin", block); }
 
 fs::path DatasetPaths::image(const std::string& split, const std::string& kind, int number) const {
   return root / split / kind / fmt::format("{:06}.{}", number, kind == "truth" ? "exr" : "png");

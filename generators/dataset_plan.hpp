@@ -34,6 +34,7 @@ struct DatasetPaths {
   std::filesystem::path state() const { return root / ".ensonify"; }
   std::filesystem::path plan() const { return state() / "plan.json"; }
   std::filesystem::path block(int index) const;
+  std::filesystem::path observed(int block) const;
   std::filesystem::path image(const std::string& split, const std::string& kind, int number) const;
   std::filesystem::path tar(const std::string& split, int number_in_split) const;
   std::filesystem::path grid(const std::string& place, const std::string& extension) const;

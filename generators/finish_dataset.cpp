@@ -1,9 +1,8 @@
 #include "ensonify/generators/finish_dataset.hpp"
 
 #include <fmt/format.h>
-#include <tbb/enumerable_thread_specific.h>
 
-#include <atomic>
+#include <algorithm>
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -17,7 +16,6 @@
 #include "ensonify/output/grid_files.hpp"
 #include "ensonify/output/sha256.hpp"
 #include "ensonify/output/trajectory_file.hpp"
-#include "ensonify/sim/observe.hpp"
 
 namespace ensonify {
 namespace {
@@ -33,25 +31,29 @@ std::vector<std::vector<int>> frames_by_place(const FrameMaker& maker) {
   return frames;
 }
 
-/// The place's truth with every cell marked that one of the frames could observe.
-OccupancyGrid observed_grid(const FrameMaker& maker, int place, const std::vector<int>& frames,
-                            const std::function<bool()>& after_frame) {
-  OccupancyGrid grid = maker.place(place).truth;
-  grid.observable.assign(grid.frame.cells(), 0);
-  // What a thread's own frames observed is joined by a logical or: the order does not matter.
-  tbb::enumerable_thread_specific<OccupancyGrid> seen(grid);
-  std::atomic<bool> stopped = false;
-  parallel_for(static_cast<int>(frames.size()), [&](int i) {
-    if (stopped) return;
-    const FramePose pose = maker.pose(frames[static_cast<std::size_t>(i)]);
-    const SonarModel sonar = maker.sonar_for(pose.index);
-    mark_observed(maker.ping(pose, false).truth, sonar.geometry, pose.T_world_sonar, seen.local());
-    if (!after_frame()) stopped = true;
-  });
-  for (const OccupancyGrid& part : seen) {
-    for (std::size_t c = 0; c < grid.observable.size(); ++c) grid.observable[c] |= part.observable[c];
+[[noreturn]] void refuse_observed(const DatasetPaths& paths, const Block& block) {
+  throw DataError(fmt::format("{}: observes cells that the places do not have; delete {} to make the block again",
+                              paths.observed(block.index).string(), paths.block(block.index).string()));
+}
+
+/// Of every place, the cells that some frame observed: one bit a cell, in the order of GridFrame::index.
+std::vector<std::vector<bool>> observed_of_places(const FrameMaker& maker, const DatasetPaths& paths,
+                                                  const std::vector<Block>& blocks) {
+  std::vector<std::vector<bool>> seen;
+  for (int place = 0; place < static_cast<int>(maker.places().size()); ++place) {
+    seen.emplace_back(maker.place(place).truth.frame.cells());
   }
-  return grid;
+  for (const Block& block : blocks) {
+    for (const ObservedCells& frame : read_observed(paths, block)) {
+      if (static_cast<std::size_t>(frame.place) >= seen.size()) refuse_observed(paths, block);
+      std::vector<bool>& cells = seen[static_cast<std::size_t>(frame.place)];
+      for (const CellRun& run : frame.runs) {
+        if (std::size_t{run.first} + run.count > cells.size()) refuse_observed(paths, block);
+        std::fill_n(cells.begin() + run.first, run.count, true);
+      }
+    }
+  }
+  return seen;
 }
 
 std::string write_grids(const DatasetPaths& paths, const std::string& place, const OccupancyGrid& grid) {
@@ -138,26 +140,34 @@ bool finish_dataset(const FrameMaker& maker, const DatasetPaths& paths, const st
                     const GenerateOptions& options) {
   const Recipe& recipe = maker.recipe();
   const auto frames = frames_by_place(maker);
-  Progress progress{0, 0, recipe.frames(), "grids"};
+  const int places = static_cast<int>(maker.places().size());
+  Progress progress{0, 0, places, "grids"};
   std::mutex mutex;
-  const auto after_frame = [&] {
+  const auto after_place = [&] {
     const std::scoped_lock lock(mutex);
     ++progress.done;
     ++progress.fresh;
     options.on_progress(progress);
-    return !options.stopped();
   };
 
   Sha256 root;
   json shards = write_metadata(maker, paths, blocks, root);
+  const std::vector<std::vector<bool>> seen = observed_of_places(maker, paths, blocks);
+  std::vector<std::string> hashes(maker.places().size());
+  parallel_for(places, [&](int place) {
+    if (options.stopped()) return;
+    const auto p = static_cast<std::size_t>(place);
+    OccupancyGrid grid = maker.place(place).truth;
+    grid.observable.assign(seen[p].begin(), seen[p].end());
+    hashes[p] = write_grids(paths, maker.places()[p].name, grid);
+    after_place();
+  });
+  if (options.stopped()) return false;
   json grids = json::array();
-  for (std::size_t place = 0; place < frames.size(); ++place) {
-    const OccupancyGrid grid = observed_grid(maker, static_cast<int>(place), frames[place], after_frame);
-    if (options.stopped()) return false;
-    const std::string& name = maker.places()[place].name;
-    const std::string hash = write_grids(paths, name, grid);
-    root.add(std::string_view(hash));
-    grids.push_back({{"place", name}, {"file", "grids/" + name + ".npz"}, {"sha256", hash}});
+  for (std::size_t p = 0; p < hashes.size(); ++p) {
+    const std::string& name = maker.places()[p].name;
+    root.add(std::string_view(hashes[p]));
+    grids.push_back({{"place", name}, {"file", "grids/" + name + ".npz"}, {"sha256", hashes[p]}});
   }
   write_trajectories(maker, paths, frames);
 

@@ -78,6 +78,7 @@ const FrameMaker::Slot& FrameMaker::slot(int index) const {
         const RandomKey key = RandomKey::from_seed(recipe_.seed).child("trajectory").child(ref.name);
         slot.trajectory.emplace(*spec, slot.place->scene, key);
       }
+      slot.place->scene.meshes = {};  // the ray caster has its own copy, and sets have many places
     });
   });
   return slot;

@@ -114,7 +114,7 @@ std::string generate_only(const Recipe& recipe, const GenerateOptions& options, 
   constexpr bool replace = false;  // a whole set is not given up for one frame
   prepare_dataset(paths, plan_json(maker, options.isa, SampleFormat::folder), replace);
   maker.check_trajectory(maker.locate(index).place);
-  return write_frame(maker, paths, index).line;
+  return write_frame(maker, paths, maker.make(index)).line;
 }
 
 }  // namespace ensonify

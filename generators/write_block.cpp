@@ -96,8 +96,7 @@ std::string content_hash(const FramePixels& pixels, const std::string& line) {
       .hex();
 }
 
-FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, int index) {
-  const Frame frame = maker.make(index);
+FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, const Frame& frame) {
   const FramePixels pixels = pixels_of(frame);
   const std::string& split = maker.recipe().splits[static_cast<std::size_t>(frame.pose.split)].name;
   for (const auto& [kind, png] : encode(pixels)) write_file(paths.image(split, kind, frame.pose.number), png);
@@ -110,12 +109,15 @@ FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, int 
 bool write_block(const FrameMaker& maker, const DatasetPaths& paths, const Block& block, SampleFormat format,
                  const std::function<bool()>& after_frame) {
   std::vector<FrameRecord> records;
+  std::vector<ObservedCells> observed;
   const std::string& split = maker.recipe().splits[static_cast<std::size_t>(block.split)].name;
   std::optional<TarShard> tar;
   if (format == SampleFormat::webdataset) tar.emplace(paths.tar(split, block.number_in_split));
   for (int index = block.first; index < block.first + block.frames; ++index) {
+    const Frame frame = maker.make(index);
+    observed.push_back({frame.pose.place, observed_cells(frame.truth, frame.sonar.geometry, frame.pose.T_world_sonar,
+                                                         maker.place(frame.pose.place).truth)});
     if (tar) {
-      const Frame frame = maker.make(index);
       const FramePixels pixels = pixels_of(frame);
       for (const auto& [kind, png] : encode(pixels)) {
         tar->add(fmt::format("{:06}.{}.png", frame.pose.number, kind), png);
@@ -125,11 +127,12 @@ bool write_block(const FrameMaker& maker, const DatasetPaths& paths, const Block
       tar->add(fmt::format("{:06}.json", frame.pose.number),
                {reinterpret_cast<const std::uint8_t*>(line.data()), line.size()});
     } else {
-      records.push_back(write_frame(maker, paths, index));
+      records.push_back(write_frame(maker, paths, frame));
     }
     if (!after_frame()) return false;
   }
   if (tar) tar->finish();
+  write_file(paths.observed(block.index), pack(observed));
   write_record(paths, block, records);
   return true;
 }
@@ -152,6 +155,11 @@ std::vector<FrameRecord> read_block_record(const DatasetPaths& paths, const Bloc
                                 records.size(), block.frames));
   }
   return records;
+}
+
+std::vector<ObservedCells> read_observed(const DatasetPaths& paths, const Block& block) {
+  const auto file = paths.observed(block.index);
+  return unpack(read_file(file), file);
 }
 
 }  // namespace ensonify

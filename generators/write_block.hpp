@@ -6,6 +6,7 @@
 
 #include "ensonify/generators/dataset_plan.hpp"
 #include "ensonify/generators/frame_pixels.hpp"
+#include "ensonify/generators/observed_record.hpp"
 
 namespace ensonify {
 
@@ -23,14 +24,17 @@ struct FrameRecord {
 };
 
 /// Writes the files of one frame in a folder dataset; returns its record.
-FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, int index);
+FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, const Frame& frame);
 
-/// Makes and writes a block, then its record in the state folder, which marks it as done. Calls after_frame() after
-/// each; where that returns false, stops and returns false, and the block counts as not done.
+/// Makes and writes a block, then what it observed and its record in the state folder, which marks it as done. Calls
+/// after_frame() after each; where that returns false, stops and returns false, and the block counts as not done.
 bool write_block(const FrameMaker& maker, const DatasetPaths& paths, const Block& block, SampleFormat format,
                  const std::function<bool()>& after_frame);
 
 /// The record of a finished block; empty where it is not finished. Throws DataError on a broken record.
 std::vector<FrameRecord> read_block_record(const DatasetPaths& paths, const Block& block);
+
+/// What the frames of a finished block observed. Throws DataError where that is missing or broken.
+std::vector<ObservedCells> read_observed(const DatasetPaths& paths, const Block& block);
 
 }  // namespace ensonify

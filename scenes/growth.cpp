@@ -168,7 +168,8 @@ std::vector<Vec3> outward_normals(const TriangleMesh& mesh) {
 TriangleMesh split_long_edges(const TriangleMesh& mesh, double edge_m, std::size_t most) {
   const auto check = [&](std::size_t triangles) {
     if (triangles > most) {
-      throw GrowthTooFine(fmt::format("gives more than {} triangles; enlarge patch_m or shrink the object", most));
+      throw GrowthTooFine(fmt::format("brings the object beyond {} triangles; enlarge patch_m or shrink the object",
+                                      max_grown_triangles));
     }
   };
   TriangleMesh fine = mesh;

@@ -43,6 +43,9 @@ struct Scene {
 /// Throws ConfigError (the YAML breaks a rule) or DataError (a mesh file can not be read).
 Scene load_scene(const std::string& path_or_name, std::uint64_t layout = 0);
 
+/// The mesh files that a scene YAML names, in its order, without reading them. Throws ConfigError.
+std::vector<std::filesystem::path> scene_mesh_files(const std::string& path_or_name);
+
 /// A scene of one mesh file in its own frame, deep under the surface of default sea water, bounds one tenth wider.
 Scene scene_from_mesh(const std::filesystem::path& mesh);
 

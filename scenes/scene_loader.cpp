@@ -148,4 +148,18 @@ Scene load_scene(const std::string& path_or_name, std::uint64_t layout) {
   return std::move(draft.scene);
 }
 
+std::vector<std::filesystem::path> scene_mesh_files(const std::string& path_or_name) {
+  Reader file = Reader::from_file(resolve_name("scenes", path_or_name));
+  std::vector<std::filesystem::path> files;
+  for (Reader& object : file.children("objects")) {
+    if (!object.has("mesh")) continue;
+    files.push_back(object.folder() / object.text("mesh"));
+    std::error_code no_throw;
+    if (!std::filesystem::is_regular_file(files.back(), no_throw)) {
+      object.fail("mesh", fmt::format("{}: no such file", files.back().string()));
+    }
+  }
+  return files;
+}
+
 }  // namespace ensonify

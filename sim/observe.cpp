@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <utility>
 
 #include "ensonify/core/error.hpp"
-#include "ensonify/core/parallel.hpp"
 
 namespace ensonify {
 namespace {
@@ -95,7 +95,25 @@ std::pair<int, int> clip_row(const Vec3& start, const Vec3& step, const Eigen::A
   return {static_cast<int>(std::floor(low)), std::min(static_cast<int>(std::ceil(high)) + 1, cells)};
 }
 
-void mark_free(const PingTruth& truth, const Frustum& frustum, const Pose& T_world_sonar, OccupancyGrid& grid) {
+/// Ascending cells, joined into runs.
+class Runs {
+ public:
+  void add(std::size_t cell) {
+    const auto c = static_cast<std::uint32_t>(cell);
+    if (!runs_.empty() && runs_.back().first + runs_.back().count == c) {
+      ++runs_.back().count;
+    } else {
+      runs_.push_back({c, 1});
+    }
+  }
+  std::vector<CellRun> take() { return std::move(runs_); }
+
+ private:
+  std::vector<CellRun> runs_;
+};
+
+std::vector<CellRun> free_cells(const PingTruth& truth, const Frustum& frustum, const Pose& T_world_sonar,
+                                const OccupancyGrid& grid) {
   const GridFrame& frame = grid.frame;
   Eigen::AlignedBox3d world;
   for (int i = 0; i < 8; ++i) {
@@ -120,8 +138,8 @@ void mark_free(const PingTruth& truth, const Frustum& frustum, const Pose& T_wor
   const double range2_max = frustum.range_max_m * frustum.range_max_m;
   const double sin2_elevation = std::pow(std::sin(std::min(frustum.elevation_max_rad, 0.5 * std::numbers::pi)), 2);
 
-  parallel_for(std::max(z_end - z_begin, 0), [&](int slab) {
-    const int z = z_begin + slab;
+  Runs runs;
+  for (int z = z_begin; z < z_end; ++z) {
     for (int y = y_begin; y < y_end; ++y) {
       const Vec3 start = T_sonar_world * frame.centre_m(0, y, z);
       const auto [begin, end] = clip_row(start, step, frustum.box_sonar_m, frame.size[0]);
@@ -138,13 +156,16 @@ void mark_free(const PingTruth& truth, const Frustum& frustum, const Pose& T_wor
         const int column = column_of(azimuth);
         const double nearest_row = std::round((elevation - truth.lowest_elevation_rad[column]) * rows_per_rad);
         const double hit = truth.first_hit_range_m(static_cast<int>(std::clamp(nearest_row, 0.0, last_row)), column);
-        if (range2 < hit * hit) grid.observable[row + static_cast<std::size_t>(x)] = 1;
+        if (range2 < hit * hit) runs.add(row + static_cast<std::size_t>(x));
       }
     }
-  });
+  }
+  return runs.take();
 }
 
-void mark_hits(const PingTruth& truth, const Frustum& frustum, const Pose& T_world_sonar, OccupancyGrid& grid) {
+std::vector<CellRun> hit_cells(const PingTruth& truth, const Frustum& frustum, const Pose& T_world_sonar,
+                               const OccupancyGrid& grid) {
+  std::vector<std::uint32_t> cells;
   // In cells of the grid; a ray is a sum of its column's and its row's vectors.
   const Eigen::Matrix3d axes = T_world_sonar.linear() / grid.frame.resolution_m;
   const Vec3 sonar = (T_world_sonar.translation() - grid.frame.origin_m) / grid.frame.resolution_m;
@@ -163,21 +184,29 @@ void mark_hits(const PingTruth& truth, const Frustum& frustum, const Pose& T_wor
     for (const Column& column : columns) {
       const double range = truth.first_hit_range_m(r, column.index);
       if (!(range >= frustum.range_min_m && range <= frustum.range_max_m)) continue;
-      const double elevation = truth.lowest_elevation_rad[column.index] + static_cast<double>(r) * truth.elevation_step_rad;
+      const double elevation =
+          truth.lowest_elevation_rad[column.index] + static_cast<double>(r) * truth.elevation_step_rad;
       if (std::abs(elevation) > frustum.elevation_max_rad) continue;
       const Vec3 hit = sonar + range * (std::cos(elevation) * column.ahead + std::sin(elevation) * axes.col(2));
       if (!((hit.array() >= 0).all() && (hit.array() < beyond.array()).all())) continue;
       const std::size_t cell =
           grid.frame.index(static_cast<int>(hit.x()), static_cast<int>(hit.y()), static_cast<int>(hit.z()));
-      if (grid.occupancy[cell] == static_cast<std::uint8_t>(Occupancy::surface)) grid.observable[cell] = 1;
+      if (grid.occupancy[cell] != static_cast<std::uint8_t>(Occupancy::surface)) continue;
+      const auto c = static_cast<std::uint32_t>(cell);
+      if (cells.empty() || cells.back() != c) cells.push_back(c);  // neighbouring rays mostly hit the same cell
     }
   }
+  std::sort(cells.begin(), cells.end());
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  Runs runs;
+  for (const std::uint32_t cell : cells) runs.add(cell);
+  return runs.take();
 }
 
 }  // namespace
 
-void mark_observed(const PingTruth& truth, const SonarGeometry& geometry, const Pose& T_world_sonar,
-                   OccupancyGrid& grid) {
+std::vector<CellRun> observed_cells(const PingTruth& truth, const SonarGeometry& geometry, const Pose& T_world_sonar,
+                                    const OccupancyGrid& grid) {
   const auto& hits = truth.first_hit_range_m;
   const auto columns = static_cast<std::size_t>(hits.columns());
   if (hits.empty() || columns != truth.ray_azimuth_rad.size() || columns != truth.lowest_elevation_rad.size() ||
@@ -188,13 +217,23 @@ void mark_observed(const PingTruth& truth, const SonarGeometry& geometry, const 
   if (!T_world_sonar.matrix().allFinite()) {
     throw ConfigError("sonar pose: not a number in it; check where the pose comes from");
   }
-  if (grid.occupancy.size() != grid.frame.cells()) {
+  if (grid.occupancy.size() != grid.frame.cells() || grid.frame.cells() > std::numeric_limits<std::uint32_t>::max()) {
     throw ConfigError("occupancy grid: its number of cells does not match its frame; voxelise the scene first");
   }
-  if (grid.observable.empty()) grid.observable.assign(grid.frame.cells(), 0);
   const Frustum frustum = frustum_of(geometry);
-  mark_free(truth, frustum, T_world_sonar, grid);
-  mark_hits(truth, frustum, T_world_sonar, grid);
+  const std::vector<CellRun> free = free_cells(truth, frustum, T_world_sonar, grid);
+  const std::vector<CellRun> hit = hit_cells(truth, frustum, T_world_sonar, grid);
+  std::vector<CellRun> all(free.size() + hit.size());
+  std::merge(free.begin(), free.end(), hit.begin(), hit.end(), all.begin(),
+             [](const CellRun& a, const CellRun& b) { return a.first < b.first; });
+  return all;
+}
+
+void mark_observed(const PingTruth& truth, const SonarGeometry& geometry, const Pose& T_world_sonar,
+                   OccupancyGrid& grid) {
+  const std::vector<CellRun> runs = observed_cells(truth, geometry, T_world_sonar, grid);
+  if (grid.observable.empty()) grid.observable.assign(grid.frame.cells(), 0);
+  for (const CellRun& run : runs) std::fill_n(grid.observable.begin() + run.first, run.count, std::uint8_t{1});
 }
 
 }  // namespace ensonify

@@ -184,7 +184,7 @@ Camera plan_camera(const Scene& scene) {
 
 Camera side_camera(const Scene& scene) {
   const Vec3 centre = scene.bounds_m.center();
-  const Pose T = pose_from_xyz_rpy({centre.x(), scene.bounds_m.min().y() - 1, centre.z()}, 0, 0, std::numbers::pi / 2);
+  const Pose T = pose_from_xyz_rpy({centre.x(), scene.navigable_m.min().y(), centre.z()}, 0, 0, std::numbers::pi / 2);
   return {T, scene.bounds_m.sizes().x(), 0};
 }
 

@@ -13,7 +13,8 @@ struct Camera {
   double field_of_view_rad = 0;  ///< horizontal; above 0: perspective
 };
 
-/// Looks straight down (north up), or north with the sea surface up; the width is that of the bounds.
+/// Straight down with north up, or north from the near side of the navigable water (a section: what is before is cut
+/// off); the width is that of the bounds.
 Camera plan_camera(const Scene& scene);
 Camera side_camera(const Scene& scene);
 /// Perspective from outside, what lies within the bounds filling the picture. Azimuth: where the camera stands, from east to north.

@@ -24,6 +24,7 @@ Scene box_scene() {
                      {"floor", 1, 1, Eigen::Affine3d::Identity(), true},
                      {"water", 2, 2, Eigen::Affine3d::Identity(), false}};
   scene.bounds_m = {Vec3(-4, -4, -5.5), Vec3(4, 4, 0)};
+  scene.navigable_m = {Vec3(-4, -3, -4), Vec3(4, 1, 0)};
   return scene;
 }
 
@@ -65,6 +66,18 @@ TEST(SceneView, SideIsToScale) {
   EXPECT_NEAR(e.right, 139, 1);
   EXPECT_NEAR(e.top, 60, 1);
   EXPECT_NEAR(e.bottom, 99, 1);
+}
+
+// A wall south of the navigable water hides nothing.
+TEST(SceneView, SideIsASection) {
+  Scene scene = box_scene();
+  const Image2<Rgb> open = draw_scene(scene, side_camera(scene), 80, 55);
+  scene.meshes.push_back(test::box_mesh({-4, -3.8f, -5}, {4, -3.2f, 0}));
+  scene.instances.push_back({"wall", 3, 1, Eigen::Affine3d::Identity(), true});
+  const Extent with = red_extent(draw_scene(scene, side_camera(scene), 80, 55)), without = red_extent(open);
+  EXPECT_EQ(with.left, without.left);
+  EXPECT_EQ(with.top, without.top);
+  EXPECT_EQ(with.bottom, without.bottom);
 }
 
 // A pinhole at 10 m before a face of 2 x 1 m, 60 deg across 200 pixels: 2 / (2 * 10 tan 30) * 200 = 34.6 pixels wide.

@@ -111,7 +111,8 @@ Reader Reader::from_text(const std::string& yaml, const std::string& name) {
   auto source = std::make_shared<const Source>(Source{name, {}});
   try {
     std::vector<YAML::Node> documents = YAML::LoadAll(yaml);
-    if (documents.size() != 1) {
+    if (documents.empty()) documents.emplace_back();
+    if (documents.size() > 1) {
       throw ConfigError(fmt::format("{}: holds {} YAML documents; it must be one", name, documents.size()));
     }
     return {documents[0], std::move(source), ""};

@@ -134,6 +134,13 @@ struct ArrayBook {
   }
 };
 
+/// Whether what follows the tag that ends at `end` is whole numbers and then another tag's end. assimp waits for ever
+/// at anything else in a list of indices.
+bool holds_indices(std::string_view xml, std::size_t end) {
+  const std::size_t after = xml.find_first_not_of("0123456789+- \t\r\n", end + 1);
+  return after != std::string_view::npos && xml.substr(after).starts_with("</");
+}
+
 }  // namespace
 
 std::string collada_fault(std::string_view xml) {
@@ -161,6 +168,9 @@ std::string collada_fault(std::string_view xml) {
       const std::size_t parent = open.empty() ? none : open.back();
       const std::size_t node = graph.add(tag, word, parent, fault);
       arrays.add(tag, word, xml.size(), fault);
+      if ((word == "p" || word == "vcount") && !tag.ends_with('/') && !holds_indices(xml, end)) {
+        fault = "a list of indices holds something else than whole numbers";
+      }
       if (!fault.empty()) return fault;
       if (!tag.ends_with('/')) open.push_back(node == none ? parent : node);
       if (open.size() > max_nesting) return "its text nests more than 400 deep";

@@ -185,17 +185,17 @@ class Stopped(FaultTest):
         self.assertEqual((out / "checksums.txt").read_bytes(), (whole / "checksums.txt").read_bytes())
 
     def test_a_signal_ends_single_commands_with_its_code_and_no_half_of_a_file(self):
-        commands = {"ping": (*PING, "out"), "voxelize": ("voxelize", "block.yaml", "--resolution", "0.05", "--out", "out/g.npz"),
-                    "show": ("scene", "show", "block.yaml", "--out", "out")}
+        commands = {"ping": (*PING, "out"), "voxelize": (*VOXELS, "out/g.npz"),
+                    "show": ("scene", "show", "block.yaml", "--width", "200", "--out", "out")}
         for name, words in commands.items():
             began = time.monotonic()
             self.succeed(*words)
             whole = time.monotonic() - began
             shutil.rmtree(self.folder / "out")
-            for step in range(5):
+            for step in range(4):
                 sent = (signal.SIGINT, signal.SIGTERM)[step % 2]
                 process = self.start(*words)
-                time.sleep(whole * (0.6 + 0.1 * step))
+                time.sleep(whole * (0.7 + 0.1 * step))
                 process.send_signal(sent)
                 process.communicate(timeout=self.seconds)
                 # The negative one: before the program had begun.

@@ -59,8 +59,11 @@ FrameInfo info_of(const std::string& text, int split, int number) {
 MetadataIndex index_metadata(const Dataset& dataset, int split) {
   const DatasetSplit& of = dataset.splits.at(static_cast<std::size_t>(split));
   MetadataIndex index{dataset.folder / of.name / "metadata.jsonl", split, {0}};
-  std::ifstream in(index.file, std::ios::binary);
-  if (!in) throw DataError(fmt::format("{}: can not be read", index.file.string()));
+  std::error_code error;
+  const bool regular = std::filesystem::is_regular_file(index.file, error);  // a pipe would never end
+  std::ifstream in;
+  if (regular) in.open(index.file, std::ios::binary);
+  if (!in.is_open()) throw DataError(fmt::format("{}: can not be read", index.file.string()));
   std::uint64_t offset = 0;
   std::vector<char> chunk(1 << 20);
   while (in.read(chunk.data(), static_cast<std::streamsize>(chunk.size())), in.gcount() > 0) {

@@ -80,7 +80,7 @@ std::vector<DatasetSplit> splits_of(const json& manifest) {
 }
 
 void read_manifest(Dataset& dataset) {
-  const json manifest = parse_json(dataset.manifest, "dataset.json");
+  const json manifest = parse_json(dataset.manifest, "broken manifest");
   const json& recipe = manifest.at("recipe");
   dataset.name = recipe.at("name");
   dataset.title = recipe.at("title");

@@ -55,6 +55,11 @@ class DocsTest(unittest.TestCase):
                 failures.append(f"$ {content}\n{done.stdout}{done.stderr}")
         return failures
 
+    def test_the_table_of_instruments_is_made_from_their_files(self):
+        table = subprocess.run([arguments.program, "sonar", "list", "--markdown"], capture_output=True, text=True,
+                               check=True).stdout
+        self.assertIn(table, (ROOT / "docs/instruments.md").read_text())
+
     def test_every_command_in_the_documents_works(self):
         count = 0
         for document in documents():

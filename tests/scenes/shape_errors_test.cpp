@@ -57,10 +57,10 @@ INSTANTIATE_TEST_SUITE_P(
     Shapes, ShapeFault,
     ::testing::Values(
         Fault{"shape: extrusion, height_m: 1, profile: [[0, 0], [1, 1], [1, 0], [0, 1]]", "crosses"},
-        Fault{"shape: extrusion, height_m: 1, profile: [[0, 0], [1, 1]]", "list of 3 to 1000 points"},
+        Fault{"shape: extrusion, height_m: 1, profile: [[0, 0], [1, 1]]", "list of 3 to 1000 entries"},
         Fault{"shape: extrusion, height_m: 1, profile: [[0, 0], [1, .nan], [1, 0]]", "entry 1 must be"},
         Fault{"shape: extrusion, height_m: 1, profile: [[0, 0], [1, 1, 1], [1, 0]]", "entry 1 must be"},
-        Fault{"shape: extrusion, height_m: 1, profile: [0, 1, 2]", "point 0 must be"},
+        Fault{"shape: extrusion, height_m: 1, profile: [0, 1, 2]", "entry 0 must be"},
         Fault{"shape: extrusion, profile: [[0, 0], [1, 1], [1, 0]]", "needs the key 'height_m'"},
         Fault{"shape: lathe, profile: [[0.5, 0], [-0.1, 1]]", "radii"},
         Fault{"shape: lathe, profile: [[0.5, 0], [0, 1], [0.5, 2]]", "radii"},

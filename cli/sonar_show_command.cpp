@@ -42,17 +42,9 @@ std::string beam_line(const SonarModel& sonar, int beam, const char* format) {
                      degrees(beam_width_rad(sonar, azimuth)));
 }
 
-Plot titled(std::string title, std::string x_label, std::string y_label) {
-  Plot plot;
-  plot.title = std::move(title);
-  plot.x_label = std::move(x_label);
-  plot.y_label = std::move(y_label);
-  return plot;
-}
-
 /// The outermost beam is wider than the one in the middle.
 Plot azimuth_plot(const SonarModel& sonar) {
-  Plot plot = titled("Receive beams", "off the beam's axis [deg]", "[dB]");
+  Plot plot = titled_plot("Receive beams", "off the beam's axis [deg]", "[dB]");
   plot.y_range = {{floor_db, 3.0}};
   const auto& beams = sonar.geometry.beam_azimuth_rad;
   const double reach = 5 * sonar.receive_azimuth.width_rad();
@@ -69,7 +61,7 @@ Plot azimuth_plot(const SonarModel& sonar) {
 }
 
 Plot elevation_plot(const SonarModel& sonar) {
-  Plot plot = titled("Elevation, two ways", "elevation [deg]", "[dB]");
+  Plot plot = titled_plot("Elevation, two ways", "elevation [deg]", "[dB]");
   plot.y_range = {{floor_db, 3.0}};
   Series series;
   const double edge = std::min(2.2 * sonar.geometry.elevation_fov_rad, radians(90.0));
@@ -83,7 +75,7 @@ Plot elevation_plot(const SonarModel& sonar) {
 }
 
 Plot beam_table_plot(const SonarModel& sonar) {
-  Plot plot = titled("Beam table", "beam (port first)", "[deg]");
+  Plot plot = titled_plot("Beam table", "beam (port first)", "[deg]");
   Series step{"to the next beam", {}, {}}, width{"-3 dB width", {}, {}};
   for (int b = 0; b < sonar.geometry.beams(); ++b) {
     step.x.push_back(b);
@@ -99,7 +91,7 @@ Plot beam_table_plot(const SonarModel& sonar) {
 }
 
 Plot range_plot(const SonarModel& sonar) {
-  Plot plot = titled("Level of a target over range", "range [m]", "[dB re full scale]");
+  Plot plot = titled_plot("Level of a target over range", "range [m]", "[dB re full scale]");
   const std::vector<float> gains = row_gains(sonar);
   const double absorption_db_per_m = ensonify::absorption_db_per_m(Water{}, sonar.frequency_hz);
   Series point{"sphere of 0.5 m radius", {}, {}}, bed{"sea bed, mu -20 dB, at 20 deg", {}, {}};
@@ -120,7 +112,7 @@ Plot range_plot(const SonarModel& sonar) {
 }
 
 Plot fan_plot(const SonarModel& sonar) {
-  Plot plot = titled("Loss across the fan, two ways", "azimuth [deg]", "[dB]");
+  Plot plot = titled_plot("Loss across the fan, two ways", "azimuth [deg]", "[dB]");
   const auto& beams = sonar.geometry.beam_azimuth_rad;
   const double edge = std::max(std::abs(beams.front()), 1e-9);
   Series series;
@@ -135,7 +127,7 @@ Plot fan_plot(const SonarModel& sonar) {
 
 /// Of the echo's energy in the bins about its own.
 Plot pulse_plot(const SonarModel& sonar) {
-  Plot plot = titled("Pulse", "bins off the echo's", "share of the energy");
+  Plot plot = titled_plot("Pulse", "bins off the echo's", "share of the energy");
   const std::vector<float> weights = PointSpread(sonar).range_weights();
   Series series{"", {}, {}, Series::Style::bars};
   for (std::size_t i = 0; i < weights.size(); ++i) {

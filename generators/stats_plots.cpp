@@ -11,14 +11,6 @@ namespace {
 constexpr std::size_t most_sampled_plots = 12;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-Plot titled(std::string title, std::string x_label, std::string y_label) {
-  Plot plot;
-  plot.title = std::move(title);
-  plot.x_label = std::move(x_label);
-  plot.y_label = std::move(y_label);
-  return plot;
-}
-
 /// Shares of all values in a step, as a line of steps.
 Series steps(const std::string& name, const Histogram& h) {
   Series series{name, {}, {}};
@@ -50,7 +42,7 @@ Plot spread_plot(const DatasetStats& stats, Plot plot, const SummaryOf& summary_
 }
 
 Plot grey_plot(const DatasetStats& stats, const char* title, std::array<std::uint64_t, 256> PixelSums::*levels) {
-  Plot plot = titled(title, "grey level", "log10 of the share of pixels");
+  Plot plot = titled_plot(title, "grey level", "log10 of the share of pixels");
   for (const auto& [split, figures] : stats.splits) {
     const auto& counts = figures.pixels.*levels;
     const auto total = static_cast<double>(std::accumulate(counts.begin(), counts.end(), std::uint64_t{0}));
@@ -90,12 +82,13 @@ const Summary* find(const std::map<std::string, Summary>& summaries, const std::
 
 PlotSheet stats_plots(const DatasetStats& stats) {
   PlotSheet sheet;
-  sheet.plots = {spread_plot(stats, titled("Mask share", "share of the frame's pixels", "share of frames"),
-                             [](const Figures& f) { return &f.mask_share; }),
-                 grey_plot(stats, "Grey levels of raw", &PixelSums::raw),
-                 grey_plot(stats, "Grey levels of clean", &PixelSums::clean),
-                 range_plot(stats, titled("Raw over range", "range [m]", "mean grey level"), &PixelSums::bin_raw, 257),
-                 range_plot(stats, titled("Mask over range", "range [m]", "share of pixels"), &PixelSums::bin_mask, 1)};
+  sheet.plots = {
+      spread_plot(stats, titled_plot("Mask share", "share of the frame's pixels", "share of frames"),
+                  [](const Figures& f) { return &f.mask_share; }),
+      grey_plot(stats, "Grey levels of raw", &PixelSums::raw),
+      grey_plot(stats, "Grey levels of clean", &PixelSums::clean),
+      range_plot(stats, titled_plot("Raw over range", "range [m]", "mean grey level"), &PixelSums::bin_raw, 257),
+      range_plot(stats, titled_plot("Mask over range", "range [m]", "share of pixels"), &PixelSums::bin_mask, 1)};
   for (const auto& [key, label] : {std::pair{"depth_m", "depth [m]"},
                                    {"roll_deg", "roll [deg]"},
                                    {"pitch_deg", "pitch, nose down [deg]"},
@@ -103,12 +96,12 @@ PlotSheet stats_plots(const DatasetStats& stats) {
     const std::string name = label;
     std::string title = name.substr(0, name.find_first_of(",["));
     title.front() = static_cast<char>(std::toupper(title.front()));
-    sheet.plots.push_back(spread_plot(stats, titled(title, name, "share of frames"),
+    sheet.plots.push_back(spread_plot(stats, titled_plot(title, name, "share of frames"),
                                       [&](const Figures& f) { return find(f.poses, key); }));
   }
   for (const auto& [key, summary] : stats.overall.sampled) {
     if (sheet.plots.size() >= 9 + most_sampled_plots) break;
-    sheet.plots.push_back(spread_plot(stats, titled("Sampled: " + key, key, "share of frames"),
+    sheet.plots.push_back(spread_plot(stats, titled_plot("Sampled: " + key, key, "share of frames"),
                                       [&](const Figures& f) { return find(f.sampled, key); }));
   }
   sheet.columns = 3;

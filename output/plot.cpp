@@ -104,6 +104,14 @@ void put_plot(std::string& script, const Plot& plot, std::size_t at) {
 
 }  // namespace
 
+Plot titled_plot(std::string title, std::string x_label, std::string y_label) {
+  Plot plot;
+  plot.title = std::move(title);
+  plot.x_label = std::move(x_label);
+  plot.y_label = std::move(y_label);
+  return plot;
+}
+
 std::vector<std::uint8_t> draw_plots(const PlotSheet& sheet, PlotFormat format) {
   const int columns = std::max(1, sheet.columns);
   const int rows = (static_cast<int>(sheet.plots.size()) + columns - 1) / columns;

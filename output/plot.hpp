@@ -34,6 +34,8 @@ struct Plot {
   std::vector<std::string> categories = {};                             ///< names of x = 0, 1, 2, ...
 };
 
+Plot titled_plot(std::string title, std::string x_label, std::string y_label);
+
 /// Plots side by side, row by row.
 struct PlotSheet {
   std::vector<Plot> plots;

@@ -152,12 +152,7 @@ std::vector<std::filesystem::path> scene_mesh_files(const std::string& path_or_n
   Reader file = Reader::from_file(resolve_name("scenes", path_or_name));
   std::vector<std::filesystem::path> files;
   for (Reader& object : file.children("objects")) {
-    if (!object.has("mesh")) continue;
-    files.push_back(object.folder() / object.text("mesh"));
-    std::error_code no_throw;
-    if (!std::filesystem::is_regular_file(files.back(), no_throw)) {
-      object.fail("mesh", fmt::format("{}: no such file", files.back().string()));
-    }
+    if (object.has("mesh")) files.push_back(mesh_path(object));
   }
   return files;
 }

@@ -38,7 +38,6 @@ Eigen::Affine3d read_place(Reader& reader, RandomSequence& random, int copy) {
 
 int import_once(SceneDraft& draft, Reader& reader) {
   MeshImportOptions options;
-  const std::string file = reader.text("mesh");
   options.scale = reader.number_or("scale", 1, {1e-6, 1e6});
   std::string unit = "as the file says", axis = unit;
   if (reader.has("unit")) {
@@ -49,11 +48,7 @@ int import_once(SceneDraft& draft, Reader& reader) {
     axis = reader.choice("up_axis", {"x", "y", "z"});
     options.up_axis = axis == "x" ? UpAxis::x : axis == "y" ? UpAxis::y : UpAxis::z;
   }
-  const std::filesystem::path path = reader.folder() / file;
-  std::error_code no_throw;
-  if (!std::filesystem::is_regular_file(path, no_throw)) {
-    reader.fail("mesh", fmt::format("{}: no such file", path.string()));
-  }
+  const std::filesystem::path path = mesh_path(reader);
   const std::string cache_key = fmt::format("{}|{}|{}|{}", path.string(), options.scale, unit, axis);
   if (const auto known = draft.imported.find(cache_key); known != draft.imported.end()) return known->second;
   const int index = add_mesh(draft, reader, import_mesh(path, options, draft.scene.warnings));
@@ -136,6 +131,15 @@ Placed place_copy(SceneDraft& draft, Reader& reader, RandomKey key, int copy) {
 }
 
 }  // namespace
+
+std::filesystem::path mesh_path(Reader& reader) {
+  const std::filesystem::path path = reader.folder() / reader.text("mesh");
+  std::error_code no_throw;
+  if (!std::filesystem::is_regular_file(path, no_throw)) {
+    reader.fail("mesh", fmt::format("{}: no such file", path.string()));
+  }
+  return path;
+}
 
 int use_material(SceneDraft& draft, Reader& reader, std::string_view key, const std::string& name) {
   auto& used = draft.scene.materials;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <string>
 #include <tuple>
@@ -23,6 +24,9 @@ struct SceneDraft {
 
 /// Index of a material in scene.materials, taken from the known ones on first use. Throws ConfigError at `key`.
 int use_material(SceneDraft& draft, Reader& reader, std::string_view key, const std::string& name);
+
+/// The file under `mesh` of an object, beside the scene's. Throws ConfigError where there is none.
+std::filesystem::path mesh_path(Reader& reader);
 
 /// Adds a mesh; throws ConfigError at `reader` where the scene grows beyond 10 M triangles (each mesh counted once).
 int add_mesh(SceneDraft& draft, const Reader& reader, TriangleMesh mesh);

@@ -64,7 +64,7 @@ void run(const Arguments& a) {
   const Scene scene = open_scene(a.scene, a.layout);
   const RayScene rays(scene, a.isa);
 
-  const Ping ping = PingTracer(rays, sonar, scene.water).trace(T_world_sonar, true);
+  const Ping ping = PingTracer(rays, sonar, scene.water).trace(T_world_sonar, {.cell_truth = true});
   const RandomKey key = RandomKey::from_seed(a.seed);
   SampledValues sampled;
   const ImageSettings settings{sample_noise(profile, key.child("noise parameters"), sampled), 0.0, 8};

@@ -7,11 +7,17 @@
 
 namespace ensonify {
 
-/// Mean (speckle-free) echo of one ping before the point spread, rows = range bins, columns = beams.
+/// Mean (speckle-free) echo of one ping before the point spread, in layers; rows = range bins, columns = beams.
 /// A cell holds the received intensity over the source intensity at 1 m (dimensionless, linear), so that
 /// echo level = source level + 10 log10(cell) (Urick 1983, sonar equation).
 struct Echo {
   Image2<float> direct;
+  /// Paths that met more than one surface, at the range of half their length and the bearing of their last leg.
+  /// Empty unless traced.
+  Image2<float> multipath;
+  /// Mean elevation (rad) of the direct echo, weighted with its energy: with range and bearing the place on the surface
+  /// that the speckle belongs to. 0 where nothing echoes. Empty unless asked for.
+  Image2<float> elevation_rad;
 };
 
 /// What the rays of one ping met, from the same hits that made its `Echo`.

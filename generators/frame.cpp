@@ -212,9 +212,9 @@ SonarModel FrameMaker::sonar_for(int index, SampledValues& sampled) const {
 
 Ping FrameMaker::ping(const FramePose& pose, bool cell_truth) const {
   const Slot& where = slot(pose.place);
-  if (!window_varies(recipe_)) return where.tracer->trace(pose.T_world_sonar, cell_truth);
+  if (!window_varies(recipe_)) return where.tracer->trace(pose.T_world_sonar, {.cell_truth = cell_truth});
   return PingTracer(where.place->rays, sonar_for(pose.index), where.place->scene.water)
-      .trace(pose.T_world_sonar, cell_truth);
+      .trace(pose.T_world_sonar, {.cell_truth = cell_truth});
 }
 
 Frame FrameMaker::make(int index) const {

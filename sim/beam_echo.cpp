@@ -44,6 +44,24 @@ void add_energy(const RayColumn& rays, const RangeBins& bins, float* energy) {
   }
 }
 
+void add_energy_at_elevation(const RayColumn& rays, const RayFan::Rows& rows, const RangeBins& bins, float* energy,
+                             float* moment) {
+  const float step = rows.elevation_rad[1] - rows.elevation_rad[0];
+  for (int i = 0; i < rays.rays; ++i) {
+    const float near = bins.place_of(rays.near_m[i]);
+    const float extent = bins.place_of(rays.far_m[i]) - near;
+    // On the tangent plane n . (r d) stays, so dr / dphi has the sign of this product.
+    const float receding = rays.slant[i] * (rays.normal_forward[i] * rows.sine[i] - rays.normal_up[i] * rows.cosine[i]);
+    const float rise = receding > 0.0f ? step : -step;
+    const float per_bin = extent > 1.0f ? rise / extent : 0.0f;
+    const float start = rows.elevation_rad[i] - (extent > 1.0f ? 0.5f * rise + (near - 0.5f) * per_bin : 0.0f);
+    spread(rays, i, bins, [&](int bin, float share) {
+      energy[bin] += share;
+      moment[bin] += share * (start + per_bin * static_cast<float>(bin));
+    });
+  }
+}
+
 void ShadowCount::clear() {
   std::fill(hits_in_bin_.begin(), hits_in_bin_.end(), 0);
   hits_before_window_ = 0;

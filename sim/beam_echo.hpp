@@ -19,6 +19,10 @@ struct RangeBins {
 /// Adds the energy of every ray of a shaded column to `energy` (count bins), spread over its footprint.
 void add_energy(const RayColumn& rays, const RangeBins& bins, float* energy);
 
+/// The same, and adds energy times elevation to `moment`; within a footprint the elevation goes from border to border.
+void add_energy_at_elevation(const RayColumn& rays, const RayFan::Rows& rows, const RangeBins& bins, float* energy,
+                             float* moment);
+
 /// Finds the first bin before which at least half of a beam's nominal elevation arc is occluded.
 class ShadowCount {
  public:

@@ -46,7 +46,7 @@ PingTruth PingTracer::empty_truth() const {
   return truth;
 }
 
-Ping PingTracer::trace(const Pose& T_world_sonar, bool cell_truth) const {
+Ping PingTracer::trace(const Pose& T_world_sonar, const TraceOptions& options) const {
   const FlushDenormals flush;
   const int beams = geometry_.beams();
   const auto range_max_m = static_cast<float>(geometry_.range_max_m);
@@ -55,16 +55,19 @@ Ping PingTracer::trace(const Pose& T_world_sonar, bool cell_truth) const {
   const Eigen::Matrix3f R = T_world_sonar.linear().cast<float>();
   const RayAxes axes{T_world_sonar.translation().cast<float>(), R.col(0), R.col(1), R.col(2)};
 
-  Ping ping{{Image2<float>(bins.count, beams)}, empty_truth()};
+  Ping ping{{Image2<float>(bins.count, beams), {}, {}}, empty_truth()};
+  if (options.elevation) ping.echo.elevation_rad = Image2<float>(bins.count, beams);
   std::optional<CellTruth> cells;
-  if (cell_truth) cells.emplace(bins.count, beams, ping.truth);
+  if (options.cell_truth) cells.emplace(bins.count, beams, ping.truth);
   RayColumn rays(fan_.elevation_rays);
   ShadowCount shadow(bins.count);
   Image2<float> energy(block_beams, bins.count);
+  Image2<float> moment(options.elevation ? block_beams : 0, bins.count);
 
   for (int block = 0; block < beams; block += block_beams) {
     const int in_block = std::min(block_beams, beams - block);
     std::fill(energy.pixels().begin(), energy.pixels().end(), 0.0f);
+    std::fill(moment.pixels().begin(), moment.pixels().end(), 0.0f);
     for (int b = 0; b < in_block; ++b) {
       const int beam = block + b;
       shadow.clear();
@@ -73,7 +76,10 @@ Ping PingTracer::trace(const Pose& T_world_sonar, bool cell_truth) const {
         const RayFan::Rows& rows = fan_.rows_of(c);
         cast_column(*scene_, rows, column, axes, reach_factor * range_max_m, rays);
         shade_column(*scene_, rows, column, rays);
-        add_energy(rays, bins, energy.row(b).data());
+        if (options.elevation)
+          add_energy_at_elevation(rays, rows, bins, energy.row(b).data(), moment.row(b).data());
+        else
+          add_energy(rays, bins, energy.row(b).data());
         shadow.add(rays, rows, bins);
         keep_first_hits(rays, c, range_max_m, ping.truth.first_hit_range_m);
         if (cells) cells->add(rays, rows, bins, *scene_, beam);
@@ -83,6 +89,9 @@ Ping PingTracer::trace(const Pose& T_world_sonar, bool cell_truth) const {
     for (int bin = 0; bin < bins.count; ++bin) {
       float* out = &ping.echo.direct(bin, block);
       for (int b = 0; b < in_block; ++b) out[b] = row_loss_[bin] * energy(b, bin);
+      if (!options.elevation) continue;
+      float* elevation = &ping.echo.elevation_rad(bin, block);
+      for (int b = 0; b < in_block; ++b) elevation[b] = energy(b, bin) > 0.0f ? moment(b, bin) / energy(b, bin) : 0.0f;
     }
   }
   return ping;

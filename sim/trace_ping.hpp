@@ -11,6 +11,12 @@ struct Ping {
   PingTruth truth;
 };
 
+/// What a trace gives beside the direct echo.
+struct TraceOptions {
+  bool cell_truth = false;  ///< the images of elevation, incidence and instance in the truth
+  bool elevation = false;   ///< Echo::elevation_rad, which coherent speckle needs
+};
+
 /// Casts one ping: mean echo intensity of the direct path, before the point spread, and the truth of the same rays.
 ///
 /// A cell of the fan of solid angle dOmega that meets a surface at range r and incidence i adds (Urick 1983, sonar
@@ -24,8 +30,7 @@ class PingTracer {
   /// The scene must outlive the tracer.
   PingTracer(const RayScene& scene, const SonarModel& sonar, const Water& water);
 
-  /// `cell_truth`: also fill the images of elevation, incidence and instance in the truth.
-  Ping trace(const Pose& T_world_sonar, bool cell_truth = false) const;
+  Ping trace(const Pose& T_world_sonar, const TraceOptions& options = {}) const;
 
   const RayFan& fan() const { return fan_; }
 

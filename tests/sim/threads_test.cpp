@@ -39,7 +39,7 @@ std::vector<Ping> pings_with(int threads) {
   const PingTracer tracer(rays, sonar, scene.water);
   std::vector<Ping> pings(4);
   parallel_for(4, [&](int i) {
-    pings[i] = tracer.trace(pose_from_xyz_rpy({0.1 * i, 0, 0}, 0.05 * i, 0.02 * i, 0), true);
+    pings[i] = tracer.trace(pose_from_xyz_rpy({0.1 * i, 0, 0}, 0.05 * i, 0.02 * i, 0), {.cell_truth = true});
   });
   return pings;
 }
@@ -69,7 +69,7 @@ TEST(Threads, CellTruthChangesNoEcho) {
   const RayScene rays(scene);
   const SonarModel sonar = bare_sonar({.elevation_rays = 128});
   const PingTracer tracer(rays, sonar, scene.water);
-  EXPECT_TRUE(same_bits(tracer.trace(Pose::Identity(), true).echo.direct, tracer.trace(Pose::Identity()).echo.direct));
+  EXPECT_TRUE(same_bits(tracer.trace(Pose::Identity(), {.cell_truth = true}).echo.direct, tracer.trace(Pose::Identity()).echo.direct));
 }
 
 }  // namespace

@@ -65,7 +65,7 @@ inline Scene scene_of(std::vector<TriangleMesh> meshes) {
 inline Ping ping_of(const Scene& scene, const SonarModel& sonar, const Pose& T_world_sonar = Pose::Identity(),
                     bool cell_truth = false) {
   const RayScene rays(scene);
-  return PingTracer(rays, sonar, scene.water).trace(T_world_sonar, cell_truth);
+  return PingTracer(rays, sonar, scene.water).trace(T_world_sonar, {.cell_truth = cell_truth});
 }
 
 inline double sum_of(const Image2<float>& image) {

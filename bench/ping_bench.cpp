@@ -25,7 +25,7 @@ struct Setup {
         rays(scene),
         sonar(load_sonar("oculus_m1200d_hf")),
         tracer(rays, sonar, scene.water),
-        spread(sonar) {
+        receiver(sonar) {
     const Trajectory path(TrajectoryPoses{}, scene, RandomKey{});
     for (int i = 0; i < poses_along_path; ++i) poses.push_back(path.at(0.5 * path.repeats_s() * i / poses_along_path));
     SampledValues sampled;
@@ -36,7 +36,7 @@ struct Setup {
   RayScene rays;
   SonarModel sonar;
   PingTracer tracer;
-  PointSpread spread;
+  Receiver receiver;
   ImageSettings settings;
   std::vector<Pose> poses;
 };
@@ -112,7 +112,7 @@ void pose_to_image(benchmark::State& state, const char* place) {
       const Ping ping = setup.tracer.trace(setup.poses[static_cast<std::size_t>(i)]);
       const RandomKey key = RandomKey::from_seed(static_cast<std::uint64_t>(i));
       benchmark::DoNotOptimize(
-          form_images(setup.sonar, setup.spread, ping.echo, ping.truth, setup.settings, key).raw.grey.pixels().data());
+          form_images(setup.receiver, ping, setup.settings, {.ping = key}).raw.grey.pixels().data());
     });
   }
   state.counters["pings_per_s"] =

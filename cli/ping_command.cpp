@@ -26,6 +26,7 @@ struct Arguments {
   std::string pose;
   std::string noise = "paper";
   std::uint64_t seed = 0;
+  std::uint64_t frame = 0;
   std::string out;
   double range_max_m = 0;
   std::string range_bins;
@@ -64,17 +65,22 @@ void run(const Arguments& a) {
   const Scene scene = open_scene(a.scene, a.layout);
   const RayScene rays(scene, a.isa);
 
-  const Ping ping = PingTracer(rays, sonar, scene.water).trace(T_world_sonar, {.cell_truth = true});
+  check_noise(profile, sonar);
   const RandomKey key = RandomKey::from_seed(a.seed);
   SampledValues sampled;
   const ImageSettings settings{sample_noise(profile, key.child("noise parameters"), sampled), 0.0, 8};
-  const PingImages images = form_images(sonar, PointSpread(sonar), ping.echo, ping.truth, settings, key.child("noise"));
+  Ping ping = PingTracer(rays, sonar, scene.water).trace(T_world_sonar, trace_options(settings.noise, true));
+  const RandomKey first = key.child("noise");
+  const PingSetting setting{T_world_sonar, key.child("surface").child(scene.name), key.child("device").child(sonar.name),
+                            a.frame == 0 ? first : first.child(a.frame)};
+  const PingImages images = form_images(Receiver(sonar), ping, settings, setting);
 
   nlohmann::json record{{"scene", scene.name},
                         {"layout", scene.layout},
                         {"sonar", describe(sonar)},
                         {"noise", describe(profile)},
                         {"seed", a.seed},
+                        {"frame", a.frame},
                         {"isa", a.isa},
                         {"mask", {{"threshold", settings.mask_threshold}}},
                         {"T_world_sonar", describe(T_world_sonar)},
@@ -91,8 +97,10 @@ void run(const Arguments& a) {
     write_file(out / "mask.png", encode_png(images.mask));
     write_file(out / "labels.png", encode_png(images.labels));
     write_file(out / "fan.png", encode_png(fan_view(images.raw.grey, sonar.geometry, 720)));
-    write_exr(out / "echo.exr", {{"direct", ping.echo.direct}}, truth_comment);
-    write_exr(out / "truth.exr", truth_channels(ping.echo, ping.truth), truth_comment);
+    std::vector<Channel> layers{{"direct", ping.echo.direct}};
+    if (!images.multipath.empty()) layers.emplace_back("multipath", images.multipath);
+    write_exr(out / "echo.exr", layers, truth_comment);
+    write_exr(out / "truth.exr", truth_channels(ping.echo, images, ping.truth), truth_comment);
     write_file(out / "ping.json", json_text(record));
   });
 
@@ -120,8 +128,16 @@ void add_ping(CLI::App& app) {
                    "Folder for raw.png clean.png mask.png labels.png fan.png echo.exr truth.exr ping.json")
       ->required()
       ->check(some_path());
-  command->add_option("--noise", a->noise, "Noise YAML or bundled name: paper, none")->capture_default_str();
-  command->add_option("--seed", a->seed, "Seed of the noise")->check(whole_number())->capture_default_str();
+  command->add_option("--noise", a->noise, "Noise YAML or bundled name: paper, none, oculus_tank, ... (docs/noise.md)")
+      ->capture_default_str();
+  command->add_option("--seed", a->seed, "Seed of the noise: scatterers, device and all that is drawn")
+      ->check(whole_number())
+      ->capture_default_str();
+  command
+      ->add_option("--frame", a->frame,
+                   "Number of the ping: another one has new receiver noise over the same speckle")
+      ->check(whole_number())
+      ->capture_default_str();
   command->add_option("--layout", a->layout, "Layout of the scene")->check(whole_number())->capture_default_str();
   command->add_option("--range-max", a->range_max_m, "End of the range window in metres")->check(above_zero());
   command->add_option("--range-bins", a->range_bins, "Range bins of the image, or native")

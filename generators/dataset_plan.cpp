@@ -50,7 +50,7 @@ std::string plan_json(const FrameMaker& maker, const std::string& isa, SampleFor
   plan["tool_version"] = ENSONIFY_VERSION;
   plan["recipe"] = describe(maker.recipe());
   plan["sonar"] = describe(maker.sonar());
-  plan["noise"] = describe(maker.noise());
+  plan["noise"] = describe(maker.noises());
   plan["isa"] = isa;
   plan["format"] = format == SampleFormat::folder ? "folder" : "webdataset";
   for (const PlaceRef& place : maker.places()) {

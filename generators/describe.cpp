@@ -86,13 +86,16 @@ json describe_trajectory(const TrajectoryPoses& trajectory) {
 }  // namespace
 
 json describe(const Recipe& recipe) {
+  const auto one_or_list = [](const std::vector<std::string>& words) {
+    return words.size() == 1 ? json(words.front()) : json(words);
+  };
   json sonar{{"model", recipe.sonar}, {"gain_db", describe(recipe.gain_db)}};
   if (recipe.range_min_m) sonar["range_min_m"] = *recipe.range_min_m;
   if (recipe.range_max_m) sonar["range_max_m"] = describe(*recipe.range_max_m);
   if (recipe.range_bins) sonar["range_bins"] = *recipe.range_bins == 0 ? json("native") : json(*recipe.range_bins);
   json result{{"name", recipe.name},       {"title", recipe.title},
               {"seed", recipe.seed},       {"sonar", sonar},
-              {"noise", recipe.noise},     {"mask", {{"threshold", recipe.mask_threshold}}},
+              {"noise", one_or_list(recipe.noise)}, {"mask", {{"threshold", recipe.mask_threshold}}},
               {"truth", recipe.cell_truth}};
   result["drift"] = {{"radial_error_m", recipe.drift.radial_error_m}, {"after_s", recipe.drift.after_s}};
   for (const Split& split : recipe.splits) {
@@ -137,18 +140,21 @@ json describe(const SonarModel& sonar) {
           {"unverified", sonar.unverified}};
 }
 
+json describe(const std::vector<NoiseProfile>& noise) {
+  if (noise.size() == 1) return describe(noise.front());
+  json list = json::array();
+  for (const NoiseProfile& profile : noise) list.push_back(describe(profile));
+  return list;
+}
+
 json describe(const NoiseProfile& noise) {
   json stages = json::array();
   for (const auto& stage : noise.stages) {
     json entry;
-    const auto put = [&](const char* parameter, const Distribution& d) {
-      entry[parameter] = describe(d);
-      return 0.0;
-    };
     std::visit(
         [&](const auto& s) {
           entry["stage"] = s.kind;
-          s.map(put);
+          for (const auto& p : s.parameters()) entry[p.name] = describe(s.*p.member);
         },
         stage);
     stages.push_back(entry);

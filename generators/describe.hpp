@@ -13,6 +13,8 @@ nlohmann::json describe(const Distribution& distribution);
 nlohmann::json describe(const Recipe& recipe);
 nlohmann::json describe(const SonarModel& sonar);
 nlohmann::json describe(const NoiseProfile& noise);
+/// The profile, or a list where there are several.
+nlohmann::json describe(const std::vector<NoiseProfile>& noise);
 
 /// Row-major 4 x 4.
 nlohmann::json describe(const Pose& T_a_b);

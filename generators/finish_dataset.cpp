@@ -205,7 +205,7 @@ bool finish_dataset(const FrameMaker& maker, const DatasetPaths& paths, const st
                 {"command_line", options.command_line},
                 {"recipe", describe(recipe)},
                 {"sonar", describe(maker.sonar())},
-                {"noise", describe(maker.noise())},
+                {"noise", describe(maker.noises())},
                 {"seed", recipe.seed},
                 {"isa", options.isa},
                 {"format", options.format == SampleFormat::folder ? "folder" : "webdataset"},

@@ -1,5 +1,9 @@
 #include "ensonify/generators/form_images.hpp"
 
+#include <cmath>
+
+#include "ensonify/noise/disturb_echo.hpp"
+#include "ensonify/noise/image_stages.hpp"
 #include "ensonify/sensor_models/receive_chain.hpp"
 
 namespace ensonify {
@@ -11,35 +15,85 @@ Image2<std::uint8_t> mask_of(const Image2<std::uint8_t>& clean, int threshold) {
   return mask;
 }
 
-/// Direct echo where the mask is set, else shadow behind what occludes half of the elevation arc, else water.
-Image2<std::uint8_t> labels_of(const Image2<std::uint8_t>& mask, const std::vector<int>& shadow_start_bin) {
+/// Mean powers of a pixel after the point spread.
+struct MeanPowers {
+  const Image2<float>& direct;
+  const Image2<float>& multipath;  ///< may be empty
+  const Image2<float>& sidelobe;   ///< may be empty
+};
+
+/// Power over full scale whose grey level is rounded up to the threshold.
+float power_at_threshold(const SonarModel& sonar, int threshold) {
+  return static_cast<float>(std::pow((threshold - 0.5) / 255.0, 2.0 / sonar.receive.gamma));
+}
+
+/// The strongest of direct, multipath and sidelobe where that reaches the threshold (of direct: where the mask is set),
+/// else shadow behind what occludes half of the elevation arc, else water.
+Image2<std::uint8_t> labels_of(const SonarModel& sonar, int threshold, const Image2<std::uint8_t>& mask,
+                               const MeanPowers& power, const std::vector<int>& shadow_start_bin) {
   Image2<std::uint8_t> labels(mask.rows(), mask.columns());
+  const float least_over_full_scale = power_at_threshold(sonar, threshold);
+  const std::vector<float> gains = row_gains(sonar);
   for (int bin = 0; bin < mask.rows(); ++bin) {
-    const auto in = mask.row(bin);
-    const auto out = labels.row(bin);
-    for (std::size_t b = 0; b < out.size(); ++b) {
-      const PixelLabel behind = bin >= shadow_start_bin[b] ? PixelLabel::shadow : PixelLabel::water;
-      out[b] = static_cast<std::uint8_t>(in[b] != 0 ? PixelLabel::direct : behind);
+    const float least = least_over_full_scale / gains[bin];
+    for (int b = 0; b < mask.columns(); ++b) {
+      PixelLabel label = bin >= shadow_start_bin[b] ? PixelLabel::shadow : PixelLabel::water;
+      float strongest = 0.0f;
+      if (mask(bin, b) != 0) {
+        label = PixelLabel::direct;
+        strongest = power.direct(bin, b);
+      }
+      const auto compete = [&](const Image2<float>& layer, PixelLabel name) {
+        if (layer.empty() || layer(bin, b) < least || layer(bin, b) <= strongest) return;
+        label = name;
+        strongest = layer(bin, b);
+      };
+      compete(power.multipath, PixelLabel::multipath);
+      compete(power.sidelobe, PixelLabel::sidelobe);
+      labels(bin, b) = static_cast<std::uint8_t>(label);
     }
   }
   return labels;
 }
 
+SonarModel amplified(SonarModel sonar, double gain_db) {
+  sonar.receive.saturation_level_db -= gain_db;
+  return sonar;
+}
+
 }  // namespace
 
-PingImages form_images(const SonarModel& sonar, const PointSpread& spread, const Echo& echo, const PingTruth& truth,
-                       const ImageSettings& settings, RandomKey key) {
+TraceOptions trace_options(const NoiseChain& noise, bool cell_truth) {
+  TraceOptions options;
+  options.cell_truth = cell_truth;
+  options.elevation = noise.find<CoherentSpeckle>() != nullptr || noise.find<Texture>() != nullptr;
+  if (const auto* multipath = noise.find<Multipath>()) options.multipath_order = static_cast<int>(multipath->order);
+  return options;
+}
+
+PingImages form_images(const Receiver& receiver, const Ping& ping, const ImageSettings& settings,
+                       const PingSetting& setting) {
+  const SonarModel& sonar = receiver.sonar;
   PingImages images;
-  const Image2<float> intensity = spread.apply(echo.direct);
-  images.clean.level = receive(sonar, intensity);
+  const Image2<float> direct = receiver.spread.apply(ping.echo.direct);
+  images.clean.level = receive(sonar, direct);
   images.clean.grey = quantise(images.clean.level);
   images.mask = mask_of(images.clean.grey, settings.mask_threshold);
-  images.labels = labels_of(images.mask, truth.shadow_start_bin);
 
-  SonarModel amplified = sonar;
-  amplified.receive.saturation_level_db -= settings.gain_db;
-  images.raw.level =
-      disturb(settings.noise, settings.gain_db == 0.0 ? images.clean.level : receive(amplified, intensity), key);
+  const SonarModel with_gain = amplified(sonar, settings.gain_db);
+  if (settings.noise.acts_before_image()) {
+    ReceivedEcho received = disturb_echo(settings.noise, ping.echo, receiver, setting);
+    images.raw.level = receive(with_gain, received.power);
+    images.labels = labels_of(sonar, settings.mask_threshold, images.mask,
+                              {direct, received.multipath, received.sidelobe}, ping.truth.shadow_start_bin);
+    images.multipath = std::move(received.layers.multipath);
+    images.sidelobe = std::move(received.sidelobe);
+  } else {
+    images.raw.level = settings.gain_db == 0.0 ? images.clean.level : receive(with_gain, direct);
+    images.labels =
+        labels_of(sonar, settings.mask_threshold, images.mask, {direct, {}, {}}, ping.truth.shadow_start_bin);
+  }
+  images.raw.level = disturb_image(settings.noise, std::move(images.raw.level), sonar.geometry, setting.ping);
   images.raw.grey = quantise(images.raw.level);
   return images;
 }

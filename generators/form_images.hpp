@@ -2,8 +2,8 @@
 
 #include "ensonify/core/echo.hpp"
 #include "ensonify/noise/noise_chain.hpp"
-#include "ensonify/sensor_models/point_spread.hpp"
-#include "ensonify/sensor_models/sonar_model.hpp"
+#include "ensonify/noise/ping_setting.hpp"
+#include "ensonify/sim/trace_ping.hpp"
 
 namespace ensonify {
 
@@ -13,6 +13,8 @@ struct PingImages {
   SonarImage raw;               ///< with noise and gain
   Image2<std::uint8_t> mask;    ///< 255 exactly where clean.grey >= threshold, else 0
   Image2<std::uint8_t> labels;  ///< `PixelLabel`
+  Image2<float> multipath;      ///< mean power in the raw image, before the point spread; empty without such a stage
+  Image2<float> sidelobe;       ///< mean power through sidelobes and leaks; empty where the noise models none
 };
 
 struct ImageSettings {
@@ -21,8 +23,11 @@ struct ImageSettings {
   int mask_threshold = 8;
 };
 
-/// Echo -> images. `key` addresses the noise.
-PingImages form_images(const SonarModel& sonar, const PointSpread& spread, const Echo& echo, const PingTruth& truth,
-                       const ImageSettings& settings, RandomKey key);
+/// What a trace must give for the chain.
+TraceOptions trace_options(const NoiseChain& noise, bool cell_truth);
+
+/// Echo -> images.
+PingImages form_images(const Receiver& receiver, const Ping& ping, const ImageSettings& settings,
+                       const PingSetting& setting);
 
 }  // namespace ensonify

@@ -59,10 +59,14 @@ FrameMaker::FrameMaker(Recipe recipe, std::string isa)
     : recipe_(std::move(recipe)),
       isa_(std::move(isa)),
       sonar_(load_sonar(recipe_.sonar, window_of(recipe_, fixed_range_max(recipe_)))),
-      spread_(sonar_),
-      noise_(load_noise(recipe_.noise)),
+      receiver_(sonar_),
       places_(all_places(recipe_)),
-      slots_(std::make_unique<Slot[]>(places_.size())) {}
+      slots_(std::make_unique<Slot[]>(places_.size())) {
+  for (const std::string& noise : recipe_.noise) {
+    noises_.push_back(load_noise(noise));
+    check_noise(noises_.back(), sonar_);
+  }
+}
 
 FrameMaker::~FrameMaker() = default;
 
@@ -90,6 +94,14 @@ RandomKey FrameMaker::frame_key(int index) const {
   return RandomKey::from_seed(recipe_.seed).child("frame").child(static_cast<std::uint64_t>(index));
 }
 
+/// Instruments keep their settings along a trajectory; frames of random poses draw their own.
+RandomKey FrameMaker::settings_key(const FramePose& frame) const {
+  if (std::holds_alternative<RandomPoses>(recipe_.splits[static_cast<std::size_t>(frame.split)].poses)) {
+    return frame_key(frame.index);
+  }
+  return RandomKey::from_seed(recipe_.seed).child("settings").child(places_[static_cast<std::size_t>(frame.place)].name);
+}
+
 FramePose FrameMaker::locate(int index) const {
   FramePose frame;
   frame.index = index;
@@ -104,6 +116,8 @@ FramePose FrameMaker::locate(int index) const {
   const int places = static_cast<int>(split.places.size());
   const bool random = std::holds_alternative<RandomPoses>(split.poses);
   frame.place = first_place + (random ? frame.number % places : frame.number / (split.frames / places));
+  RandomSequence draw(settings_key(frame).child("noise profile"));
+  frame.noise = draw.below(static_cast<int>(noises_.size()));
   return frame;
 }
 
@@ -210,11 +224,11 @@ SonarModel FrameMaker::sonar_for(int index, SampledValues& sampled) const {
   return load_sonar(recipe_.sonar, window_of(recipe_, range_max_m));
 }
 
-Ping FrameMaker::ping(const FramePose& pose, bool cell_truth) const {
+Ping FrameMaker::ping(const FramePose& pose, const TraceOptions& options) const {
   const Slot& where = slot(pose.place);
-  if (!window_varies(recipe_)) return where.tracer->trace(pose.T_world_sonar, {.cell_truth = cell_truth});
+  if (!window_varies(recipe_)) return where.tracer->trace(pose.T_world_sonar, options);
   return PingTracer(where.place->rays, sonar_for(pose.index), where.place->scene.water)
-      .trace(pose.T_world_sonar, {.cell_truth = cell_truth});
+      .trace(pose.T_world_sonar, options);
 }
 
 Frame FrameMaker::make(int index) const {
@@ -223,19 +237,22 @@ Frame FrameMaker::make(int index) const {
   frame.pose = pose(index);
   SampledValues& sampled = frame.pose.sampled;
   frame.sonar = sonar_for(index, sampled);
-  Ping ping = this->ping(frame.pose, recipe_.cell_truth);
 
   ImageSettings settings;
-  settings.noise = sample_noise(noise_, key.child("noise parameters"), sampled);
-  RandomSequence random(key.child("gain_db"));
+  const RandomKey instrument = settings_key(frame.pose);
+  settings.noise = sample_noise(noises_[static_cast<std::size_t>(frame.pose.noise)],
+                                instrument.child("noise parameters"), sampled);
+  RandomSequence random(instrument.child("gain_db"));
   settings.gain_db = sample(recipe_.gain_db, random);
   if (!std::holds_alternative<Constant>(recipe_.gain_db)) sampled.emplace_back("sonar.gain_db", settings.gain_db);
   settings.mask_threshold = recipe_.mask_threshold;
 
-  frame.images =
-      window_varies(recipe_)
-          ? form_images(frame.sonar, PointSpread(frame.sonar), ping.echo, ping.truth, settings, key.child("noise"))
-          : form_images(frame.sonar, spread_, ping.echo, ping.truth, settings, key.child("noise"));
+  const RandomKey set = RandomKey::from_seed(recipe_.seed);
+  const PingSetting setting{frame.pose.T_world_sonar, set.child("surface").child(places_[frame.pose.place].name),
+                            set.child("device").child(sonar_.name), key.child("noise")};
+  Ping ping = this->ping(frame.pose, trace_options(settings.noise, recipe_.cell_truth));
+  frame.images = window_varies(recipe_) ? form_images(Receiver(frame.sonar), ping, settings, setting)
+                                        : form_images(receiver_, ping, settings, setting);
   frame.truth = std::move(ping.truth);
   frame.echo = std::move(ping.echo);
   return frame;

@@ -18,6 +18,7 @@ struct FramePose {
   int split = 0;                 ///< index into Recipe::splits
   int number = 0;                ///< within the split: its file name
   int place = 0;                 ///< over all splits' places in order
+  int noise = 0;                 ///< index into FrameMaker::noises
   std::optional<double> time_s;  ///< empty for random poses
   Pose T_world_sonar = Pose::Identity();
   Pose T_world_sonar_est = Pose::Identity();
@@ -42,7 +43,7 @@ class FrameMaker {
 
   const Recipe& recipe() const { return recipe_; }
   const SonarModel& sonar() const { return sonar_; }
-  const NoiseProfile& noise() const { return noise_; }
+  const std::vector<NoiseProfile>& noises() const { return noises_; }
   const std::vector<PlaceRef>& places() const { return places_; }
   /// Builds the place if need be.
   const Place& place(int index) const;
@@ -53,20 +54,21 @@ class FrameMaker {
   /// runs into something, or where a recorded path ends too early.
   void check_trajectory(int place) const;
 
-  /// Split, number and place of a frame, without its pose.
+  /// Split, number, place and noise profile of a frame, without its pose.
   FramePose locate(int index) const;
   /// The instrument as it is set in a frame.
   SonarModel sonar_for(int index) const;
   /// Pose of a frame, without its ping. Throws DataError where no random pose keeps the rules, ConfigError where the
   /// trajectory is inside of something at that time.
   FramePose pose(int index) const;
-  Ping ping(const FramePose& pose, bool cell_truth) const;
+  Ping ping(const FramePose& pose, const TraceOptions& options = {}) const;
   Frame make(int index) const;
 
  private:
   struct Slot;
   SonarModel sonar_for(int index, SampledValues& sampled) const;
   RandomKey frame_key(int index) const;
+  RandomKey settings_key(const FramePose& frame) const;
   const Slot& slot(int place) const;
   const Split& split_of_place(int place) const;
   [[noreturn]] void refuse_short(int place) const;
@@ -75,8 +77,8 @@ class FrameMaker {
   Recipe recipe_;
   std::string isa_;
   SonarModel sonar_;
-  PointSpread spread_;
-  NoiseProfile noise_;
+  Receiver receiver_;
+  std::vector<NoiseProfile> noises_;
   std::vector<PlaceRef> places_;
   std::unique_ptr<Slot[]> slots_;
 };

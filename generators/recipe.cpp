@@ -76,6 +76,17 @@ RandomPoses read_random_poses(Reader poses) {
   return random;
 }
 
+std::vector<std::string> read_noise(Reader& file) {
+  std::vector<std::string> profiles;
+  if (file.has("noise") && file.node("noise").IsSequence()) {
+    for (const std::string& word : file.texts("noise")) profiles.push_back(beside(file, word));
+  } else {
+    profiles.push_back(beside(file, file.text("noise")));
+  }
+  if (profiles.empty()) file.fail("noise", "needs at least one profile; none is a profile too");
+  return profiles;
+}
+
 Split read_split(const std::string& name, Reader split) {
   Split result;
   result.name = name;
@@ -139,7 +150,7 @@ Recipe load_recipe(const std::string& path_or_name) {
   }
   recipe.gain_db = read_distribution_or(sonar, "gain_db", 0.0, {-60.0, 60.0});
   sonar.finish();
-  recipe.noise = beside(file, file.text("noise"));
+  recipe.noise = read_noise(file);
   if (file.has("mask")) {
     Reader mask = file.child("mask");
     recipe.mask_threshold = mask.integer("threshold", 1, 255);

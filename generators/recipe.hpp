@@ -51,7 +51,7 @@ struct Recipe {
   std::optional<Distribution> range_max_m;
   std::optional<int> range_bins;       ///< 0: native
   Distribution gain_db = Constant{0};  ///< of the raw image over the nominal receive chain
-  std::string noise;
+  std::vector<std::string> noise;  ///< profiles; of several, each frame (each place, where one is swum) draws one
   int mask_threshold = 8;   ///< grey level
   bool cell_truth = false;  ///< write truth/*.exr
   std::vector<Split> splits;

@@ -4,8 +4,11 @@
 
 namespace ensonify {
 
-std::vector<Channel> truth_channels(const Echo& echo, const PingTruth& truth) {
-  std::vector<Channel> channels{{"direct", echo.direct}};
+std::vector<Channel> truth_channels(const Echo& echo, const PingImages& images, const PingTruth& truth) {
+  const Image2<float> nothing(echo.direct.rows(), echo.direct.columns());
+  std::vector<Channel> channels{{"direct", echo.direct},
+                                {"multipath", images.multipath.empty() ? nothing : images.multipath},
+                                {"sidelobe", images.sidelobe.empty() ? nothing : images.sidelobe}};
   if (truth.instance.empty()) return channels;
   channels.emplace_back("elevation.min", truth.elevation_min_rad);
   channels.emplace_back("elevation.max", truth.elevation_max_rad);

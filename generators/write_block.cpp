@@ -83,7 +83,7 @@ std::string metadata_line(const FrameMaker& maker, const FramePose& pose, const 
   line["sonar"] = sonar.name;
   line["range_min_m"] = sonar.geometry.range_min_m;
   line["range_max_m"] = sonar.geometry.range_max_m;
-  line["noise"] = maker.noise().name;
+  line["noise"] = maker.noises()[static_cast<std::size_t>(pose.noise)].name;
   line["time"] = pose.time_s ? json(*pose.time_s) : json(nullptr);
   line["T_world_sonar"] = describe(pose.T_world_sonar);
   line["T_world_sonar_est"] = describe(pose.T_world_sonar_est);
@@ -121,7 +121,7 @@ FrameRecord write_frame(const FrameMaker& maker, const DatasetPaths& paths, cons
   }
   if (maker.recipe().cell_truth) {
     const auto file = paths.image(split, "truth", frame.pose.number);
-    write_exr(file, truth_channels(frame.echo, frame.truth), truth_comment);
+    write_exr(file, truth_channels(frame.echo, frame.images, frame.truth), truth_comment);
     files.push_back(written(paths, file));
   }
   return record_of(maker, frame, pixels);

@@ -6,22 +6,73 @@
 
 #include "ensonify/config/library.hpp"
 #include "ensonify/config/reader.hpp"
-#include "ensonify/noise/random_row.hpp"
+#include "ensonify/core/error.hpp"
 
 namespace ensonify {
 namespace {
 
-constexpr Limits sigma_limits{0.0, 10.0};
 constexpr std::size_t max_stages = 32;
+constexpr std::array domain_names{"on the echo", "speckle", "on the field", "on the image"};
 
-NoiseStage<Distribution> read_stage(Reader& stage) {
-  const std::string kind = stage.choice("stage", {GaussianSpeckle<double>::kind, AdditiveRayleigh<double>::kind});
-  const Distribution sigma = read_distribution(stage, "sigma", sigma_limits);
-  if (kind == GaussianSpeckle<double>::kind) return GaussianSpeckle<Distribution>{sigma};
-  return AdditiveRayleigh<Distribution>{sigma};
+template <template <typename> class Stage>
+void read_parameters(Reader& reader, Stage<Distribution>& stage) {
+  for (const auto& p : Stage<Distribution>::parameters()) {
+    stage.*p.member = p.otherwise ? read_distribution_or(reader, p.name, *p.otherwise, p.limits)
+                                  : read_distribution(reader, p.name, p.limits);
+  }
 }
 
-/// Names every stage by its kind and which of its kind it is, so that other stages do not shift its numbers.
+template <std::size_t... Kinds>
+NoiseStage<Distribution> read_stage(Reader& reader, std::index_sequence<Kinds...>) {
+  using Any = NoiseStage<Distribution>;
+  const std::string kind = reader.choice("stage", {std::variant_alternative_t<Kinds, Any>::kind...});
+  Any stage;
+  const auto read_if_named = [&]<typename Stage>(Stage) {
+    if (kind != Stage::kind) return;
+    stage = Stage{};
+    read_parameters(reader, std::get<Stage>(stage));
+  };
+  (read_if_named(std::variant_alternative_t<Kinds, Any>{}), ...);
+  return stage;
+}
+
+template <template <typename> class Stage, typename Draw>
+NoiseStage<double> draw_parameters(const Stage<Distribution>& stage, const Draw& draw) {
+  Stage<double> drawn{};
+  constexpr auto from = Stage<Distribution>::parameters();
+  constexpr auto to = Stage<double>::parameters();
+  for (std::size_t i = 0; i < from.size(); ++i) drawn.*to[i].member = draw(from[i].name, stage.*from[i].member);
+  return drawn;
+}
+
+double largest(const Distribution& distribution) {
+  struct {
+    double operator()(const Constant& d) const { return d.value; }
+    double operator()(const Uniform& d) const { return d.high; }
+    double operator()(const LogUniform& d) const { return d.high; }
+    double operator()(const Normal& d) const { return d.mean + 3.0 * d.sigma; }
+    double operator()(const Choice& d) const { return *std::max_element(d.values.begin(), d.values.end()); }
+  } visitor;
+  return std::visit(visitor, distribution);
+}
+
+void check_order(const Reader& reader, const std::vector<NoiseStage<Distribution>>& stages) {
+  if (stages.size() < 2) return;
+  const NoiseDomain before = domain_of(stages[stages.size() - 2]);
+  const NoiseDomain now = domain_of(stages.back());
+  if (before == NoiseDomain::speckle && now == NoiseDomain::speckle) {
+    reader.fail("stage", "a profile has one speckle stage: coherent_speckle, rayleigh_speckle, gamma_speckle, k_speckle");
+  }
+  if (now < before) {
+    reader.fail("stage", fmt::format("a stage {} can not follow one {}; the order is: on the echo, speckle, on the "
+                                     "field, on the image",
+                                     domain_names[static_cast<std::size_t>(now)],
+                                     domain_names[static_cast<std::size_t>(before)]));
+  }
+}
+
+}  // namespace
+
 template <typename Value>
 std::vector<std::string> stage_names(const std::vector<NoiseStage<Value>>& stages) {
   std::vector<std::string> names;
@@ -33,37 +84,40 @@ std::vector<std::string> stage_names(const std::vector<NoiseStage<Value>>& stage
   }
   return names;
 }
+template std::vector<std::string> stage_names(const std::vector<NoiseStage<double>>&);
+template std::vector<std::string> stage_names(const std::vector<NoiseStage<Distribution>>&);
 
-/// A row of the image and the uniform numbers at its pixels.
-struct RowDisturbance {
-  std::span<float> level;
-  std::span<float> uniform;
-
-  void operator()(const GaussianSpeckle<double>& stage) const {
-    to_normal(uniform);
-    const auto sigma = static_cast<float>(stage.sigma);
-    for (std::size_t b = 0; b < level.size(); ++b) level[b] *= 1.0f + sigma * uniform[b];
-  }
-  void operator()(const AdditiveRayleigh<double>& stage) const {
-    to_rayleigh(uniform);
-    const auto sigma = static_cast<float>(stage.sigma);
-    for (std::size_t b = 0; b < level.size(); ++b) level[b] += sigma * uniform[b];
-  }
-};
-
-}  // namespace
+bool NoiseChain::acts_before_image() const {
+  return std::any_of(stages.begin(), stages.end(), [](const auto& s) { return domain_of(s) < NoiseDomain::image; });
+}
 
 NoiseProfile load_noise(const std::string& path_or_name) {
   Reader file = Reader::from_file(resolve_name("noise", path_or_name));
   NoiseProfile profile;
   profile.name = file.text("name");
   for (Reader& stage : file.children("stages")) {
-    profile.stages.push_back(read_stage(stage));
+    profile.stages.push_back(
+        read_stage(stage, std::make_index_sequence<std::variant_size_v<NoiseStage<Distribution>>>{}));
     stage.finish();
+    check_order(stage, profile.stages);
   }
   if (profile.stages.size() > max_stages) file.fail("stages", fmt::format("at most {} stages", max_stages));
   file.finish();
   return profile;
+}
+
+void check_noise(const NoiseProfile& profile, const SonarModel& sonar) {
+  const int beams = sonar.geometry.beams();
+  const auto must_fit = [&](const char* kind, const char* parameter, const Distribution& width) {
+    if (largest(width) < beams) return;
+    throw ConfigError(fmt::format("noise {}: {}: {} reaches {:g}, which is wider than the fan of {} ({} beams); it must "
+                                  "be less than the number of beams",
+                                  profile.name, kind, parameter, largest(width), sonar.name, beams));
+  };
+  for (const auto& stage : profile.stages) {
+    if (const auto* s = std::get_if<CrossTalk<Distribution>>(&stage)) must_fit(s->kind, "period_beams", s->period_beams);
+    if (const auto* s = std::get_if<CentreStripe<Distribution>>(&stage)) must_fit(s->kind, "width_beams", s->width_beams);
+  }
 }
 
 NoiseChain sample_noise(const NoiseProfile& profile, RandomKey key, SampledValues& sampled) {
@@ -78,26 +132,9 @@ NoiseChain sample_noise(const NoiseProfile& profile, RandomKey key, SampledValue
       }
       return value;
     };
-    std::visit([&](const auto& stage) { chain.stages.emplace_back(stage.map(draw)); }, profile.stages[i]);
+    std::visit([&](const auto& stage) { chain.stages.push_back(draw_parameters(stage, draw)); }, profile.stages[i]);
   }
   return chain;
-}
-
-Image2<float> disturb(const NoiseChain& chain, Image2<float> level, RandomKey key) {
-  const auto beams = static_cast<std::size_t>(level.columns());
-  std::vector<std::uint32_t> words(beams);
-  std::vector<float> uniform(beams);
-  const std::vector<std::string> names = stage_names(chain.stages);
-  for (std::size_t i = 0; i < chain.stages.size(); ++i) {
-    const RandomKey stage_key = key.child(names[i]);
-    for (int bin = 0; bin < level.rows(); ++bin) {
-      fill_words(stage_key, static_cast<std::uint32_t>(bin), words);
-      for (std::size_t b = 0; b < beams; ++b) uniform[b] = uniform_of(words[b]);
-      std::visit(RowDisturbance{level.row(bin), uniform}, chain.stages[i]);
-    }
-  }
-  for (float& v : level.pixels()) v = std::min(std::max(v, 0.0f), 1.0f);
-  return level;
 }
 
 }  // namespace ensonify

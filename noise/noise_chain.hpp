@@ -2,47 +2,29 @@
 
 #include <string>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include "ensonify/config/distribution.hpp"
-#include "ensonify/core/image2.hpp"
-#include "ensonify/core/random.hpp"
+#include "ensonify/noise/noise_stage.hpp"
+#include "ensonify/sensor_models/sonar_model.hpp"
 
 namespace ensonify {
 
-/// level <- level * (1 + sigma N(0, 1)): the multiplicative speckle of HoloOcean, Stonefish and Lin et al. (ICRA 2023).
-/// Acts after gamma, so it is no model of real speckle (see docs/noise.md).
-template <typename Value>
-struct GaussianSpeckle {
-  static constexpr const char* kind = "gaussian_speckle";
-  Value sigma;
-  template <typename F>
-  auto map(F&& f) const {
-    return GaussianSpeckle<decltype(f("sigma", sigma))>{f("sigma", sigma)};
-  }
-};
-
-/// level <- level + Rayleigh(sigma): the additive noise of HoloOcean and Lin et al. (ICRA 2023). Mean 1.2533 sigma.
-template <typename Value>
-struct AdditiveRayleigh {
-  static constexpr const char* kind = "additive_rayleigh";
-  Value sigma;
-  template <typename F>
-  auto map(F&& f) const {
-    return AdditiveRayleigh<decltype(f("sigma", sigma))>{f("sigma", sigma)};
-  }
-};
-
-/// The closed set of disturbances; Value is double, or Distribution before sampling. A new one is a struct here, an
-/// entry in read_stage and an overload in RowDisturbance (noise_chain.cpp).
-template <typename Value>
-using NoiseStage = std::variant<GaussianSpeckle<Value>, AdditiveRayleigh<Value>>;
-
-/// Stages in the order they act, every number fixed.
+/// Stages in the order they act, every number fixed. Domains never go back (see `NoiseDomain`).
 struct NoiseChain {
   std::string name;
   std::vector<NoiseStage<double>> stages;
+
+  /// Does any stage need more than the finished image: speckle, multipath, receiver, ...?
+  bool acts_before_image() const;
+  /// The stage of that kind, or null.
+  template <template <typename> class Stage>
+  const Stage<double>* find() const {
+    for (const auto& stage : stages) {
+      if (const auto* found = std::get_if<Stage<double>>(&stage)) return found;
+    }
+    return nullptr;
+  }
 };
 
 /// Stages whose numbers may be distributions.
@@ -56,12 +38,22 @@ using SampledValues = std::vector<std::pair<std::string, double>>;
 /// Loads a profile (path or bundled name). Throws ConfigError.
 NoiseProfile load_noise(const std::string& path_or_name);
 
+/// Throws ConfigError where a stage does not fit the instrument: a stripe or a cross-talk period wider than the fan.
+void check_noise(const NoiseProfile& profile, const SonarModel& sonar);
+
 /// Draws the numbers of a profile. What comes from a true distribution is appended to `sampled` as
 /// "noise.<kind>.<parameter>".
 NoiseChain sample_noise(const NoiseProfile& profile, RandomKey key, SampledValues& sampled);
 
-/// Runs the chain on an image of levels 0..1 (rows = bins, columns = beams); the result is clipped to 0..1.
-/// Numbers are addressed by (key, stage, bin, beam): a stage that is switched off changes no other stage's numbers.
-Image2<float> disturb(const NoiseChain& chain, Image2<float> level, RandomKey key);
+/// Names every stage by its kind and which of its kind it is, so that other stages do not shift its random numbers.
+template <typename Value>
+std::vector<std::string> stage_names(const std::vector<NoiseStage<Value>>& stages);
+extern template std::vector<std::string> stage_names(const std::vector<NoiseStage<double>>&);
+extern template std::vector<std::string> stage_names(const std::vector<NoiseStage<Distribution>>&);
+
+template <typename Value>
+NoiseDomain domain_of(const NoiseStage<Value>& stage) {
+  return std::visit([](const auto& s) { return s.domain; }, stage);
+}
 
 }  // namespace ensonify

@@ -61,16 +61,10 @@ inline float normal_inline(float u) {
 inline float rayleigh_inline(float u) { return std::sqrt(std::max(-2.0f * log_of(u), 0.0f)); }
 
 constexpr int lanes = 16;
+using Lanes = std::array<std::uint32_t, lanes>;
 
-/// Philox4x32-10 (Salmon et al. 2011) for `lanes` consecutive values of the first counter word.
-inline void philox_lanes(RandomKey key, std::uint32_t first, std::uint32_t row, std::uint32_t* out) {
-  std::array<std::uint32_t, lanes> c0, c1, c2, c3;
-  for (int l = 0; l < lanes; ++l) {
-    c0[l] = first + static_cast<std::uint32_t>(l);
-    c1[l] = row;
-    c2[l] = 0;
-    c3[l] = 0;
-  }
+/// Philox4x32-10 (Salmon et al. 2011) of `lanes` counters, in place.
+inline void philox_lanes(RandomKey key, Lanes& c0, Lanes& c1, Lanes& c2, Lanes& c3) {
   std::uint32_t k0 = key.word0;
   std::uint32_t k1 = key.word1;
   for (int round = 0; round < 10; ++round) {
@@ -87,6 +81,18 @@ inline void philox_lanes(RandomKey key, std::uint32_t first, std::uint32_t row, 
     k0 += 0x9E3779B9u;
     k1 += 0xBB67AE85u;
   }
+}
+
+/// The words of `lanes` consecutive values of the first counter, four of each in turn.
+inline void philox_row(RandomKey key, std::uint32_t first, std::uint32_t row, std::uint32_t* out) {
+  Lanes c0, c1, c2, c3;
+  for (int l = 0; l < lanes; ++l) {
+    c0[l] = first + static_cast<std::uint32_t>(l);
+    c1[l] = row;
+    c2[l] = 0;
+    c3[l] = 0;
+  }
+  philox_lanes(key, c0, c1, c2, c3);
   for (int l = 0; l < lanes; ++l) {
     out[4 * l] = c0[l];
     out[4 * l + 1] = c1[l];
@@ -102,12 +108,37 @@ void fill_words(RandomKey key, std::uint32_t row, std::span<std::uint32_t> words
   std::uint32_t block = 0;
   std::size_t done = 0;
   for (; done + chunk <= words.size(); done += chunk, block += lanes) {
-    philox_lanes(key, block, row, words.data() + done);
+    philox_row(key, block, row, words.data() + done);
   }
   if (done < words.size()) {
     std::array<std::uint32_t, chunk> rest;
-    philox_lanes(key, block, row, rest.data());
+    philox_row(key, block, row, rest.data());
     std::copy_n(rest.begin(), words.size() - done, words.begin() + static_cast<std::ptrdiff_t>(done));
+  }
+}
+
+void words_at(RandomKey key, const Counters& counters, std::span<std::uint32_t> word0,
+              std::span<std::uint32_t> word1) {
+  for (std::size_t first = 0; first < word0.size(); first += lanes) {
+    const std::size_t count = std::min<std::size_t>(lanes, word0.size() - first);
+    Lanes c0{}, c1{}, c2{}, c3{};
+    std::copy_n(counters.c0.data() + first, count, c0.begin());
+    std::copy_n(counters.c1.data() + first, count, c1.begin());
+    std::copy_n(counters.c2.data() + first, count, c2.begin());
+    std::copy_n(counters.c3.data() + first, count, c3.begin());
+    philox_lanes(key, c0, c1, c2, c3);
+    std::copy_n(c0.begin(), count, word0.data() + first);
+    std::copy_n(c1.begin(), count, word1.data() + first);
+  }
+}
+
+void uniform_row(RandomKey key, std::uint32_t row, std::span<float> uniforms) {
+  std::array<std::uint32_t, 4 * lanes> words;
+  std::uint32_t block = 0;
+  for (std::size_t first = 0; first < uniforms.size(); first += words.size(), block += lanes) {
+    const std::size_t count = std::min(words.size(), uniforms.size() - first);
+    philox_row(key, block, row, words.data());
+    for (std::size_t i = 0; i < count; ++i) uniforms[first + i] = uniform_of(words[i]);
   }
 }
 

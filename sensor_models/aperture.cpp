@@ -15,7 +15,7 @@ double sinc(double x) {
 /// Amplitude of a raised-cosine window a0 + (1 - a0) cos, x = (length / wavelength) sin(theta).
 double raised_cosine(double x, double a0) { return sinc(x) + 0.5 * (1.0 - a0) / a0 * (sinc(x - 1.0) + sinc(x + 1.0)); }
 
-double amplitude(Shading shading, double x) {
+double shaded_amplitude(Shading shading, double x) {
   switch (shading) {
     case Shading::uniform:
       return sinc(x);
@@ -37,7 +37,7 @@ double half_power_point(Shading shading) {
   double high = 1.0;
   for (int i = 0; i < 60; ++i) {
     const double middle = 0.5 * (low + high);
-    (amplitude(shading, middle) > std::numbers::sqrt2 / 2.0 ? low : high) = middle;
+    (shaded_amplitude(shading, middle) > std::numbers::sqrt2 / 2.0 ? low : high) = middle;
   }
   return 0.5 * (low + high);
 }
@@ -50,8 +50,10 @@ Aperture::Aperture(Shading shading, double width_rad)
       scale_((shading == Shading::box || shading == Shading::gaussian ? 1.0 : half_power_point(shading)) /
              std::sin(0.5 * width_rad)) {}
 
+double Aperture::amplitude(double sine_offset) const { return shaded_amplitude(shading_, scale_ * sine_offset); }
+
 double Aperture::power(double sine_offset) const {
-  const double a = amplitude(shading_, scale_ * sine_offset);
+  const double a = amplitude(sine_offset);
   return a * a;
 }
 

@@ -13,6 +13,8 @@ class Aperture {
   /// `width_rad`: full -3 dB width on the axis, in (0, pi).
   Aperture(Shading shading, double width_rad);
 
+  /// Amplitude at an offset of sine_offset from the axis: 1 on it, negative in every other sidelobe.
+  double amplitude(double sine_offset) const;
   /// Power at an offset of sine_offset = sin(theta) - sin(theta_0) from the axis.
   double power(double sine_offset) const;
   /// Sine offset where the main lobe ends: the first null; for gaussian -40 dB; for box the edge.

@@ -51,8 +51,8 @@ std::vector<double> read_beams(Reader beams) {
 }
 
 void read_range(Reader range, const RangeWindow& window, SonarModel& sonar) {
-  sonar.instrument_range_min_m = range.number("min_m", positive);
-  sonar.instrument_range_max_m = range.number("max_m", {sonar.instrument_range_min_m, 1000.0});
+  sonar.instrument_range_min_m = range.number("min_m", {0.0, 1000.0});
+  sonar.instrument_range_max_m = range.number("max_m", {std::max(sonar.instrument_range_min_m, 1e-3), 1000.0});
   sonar.native_bin_m = range.number("native_bin_m", {1e-4, 1.0});
   const double default_max_m = range.number_or("default_max_m", sonar.instrument_range_max_m, positive);
   const int default_bins = range.integer_or("default_bins", 0, 0, max_bins);

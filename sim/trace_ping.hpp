@@ -15,6 +15,7 @@ struct Ping {
 struct TraceOptions {
   bool cell_truth = false;  ///< the images of elevation, incidence and instance in the truth
   bool elevation = false;   ///< Echo::elevation_rad, which coherent speckle needs
+  int multipath_order = 0;  ///< Echo::multipath of paths that met up to this many surfaces (2 or 3); 0: none
 };
 
 /// Casts one ping: mean echo intensity of the direct path, before the point spread, and the truth of the same rays.

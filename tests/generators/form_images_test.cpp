@@ -26,7 +26,7 @@ Formed form(const ImageSettings& settings, const SonarModel& sonar = instrument(
   Ping ping = ping_of(
       scene_of({floor_mesh(-0.8), moved(sphere_mesh(0.5), {4.0, 0, -0.3}), wall_mesh({8.0, 0, 0}, {-1, 0.3, 0})}),
       sonar);
-  PingImages images = form_images(sonar, PointSpread(sonar), ping.echo, ping.truth, settings, RandomKey::from_seed(1));
+  PingImages images = form_images(Receiver(sonar), ping, settings, {.ping = RandomKey::from_seed(1)});
   return {std::move(ping), std::move(images)};
 }
 

@@ -26,12 +26,12 @@ std::set<std::string> documented() {
 }
 
 TEST(TruthChannels, AreThoseOfTheDocument) {
-  Echo echo{Image2<float>(2, 3)};
+  Echo echo{Image2<float>(2, 3), {}, {}};
   PingTruth truth;
   truth.elevation_min_rad = truth.elevation_max_rad = truth.elevation_strongest_rad = truth.incidence_rad = echo.direct;
   truth.instance = Image2<std::int32_t>(2, 3, -1);
   std::set<std::string> written;
-  for (const auto& [name, image] : truth_channels(echo, truth)) written.insert(name);
+  for (const auto& [name, image] : truth_channels(echo, {}, truth)) written.insert(name);
   EXPECT_EQ(documented(), written);
 }
 

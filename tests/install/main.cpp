@@ -14,7 +14,7 @@ int main() {
   const Pose T_world_sonar = pose_from_xyz_rpy({1.0, 0.0, -1.5}, 0.0, 0.0, radians(-90.0));
   const Ping ping = PingTracer(rays, sonar, scene.water).trace(T_world_sonar);
   const ImageSettings settings{{"none", {}}, 0.0, 8};
-  const PingImages images = form_images(sonar, PointSpread(sonar), ping.echo, ping.truth, settings, {});
+  const PingImages images = form_images(Receiver(sonar), ping, settings, {});
 
   // Eigen's alignment must be the same on both sides of the library's border: the wall stands where the YAML says.
   const auto wall = std::find_if(scene.instances.begin(), scene.instances.end(),

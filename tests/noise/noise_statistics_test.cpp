@@ -7,7 +7,7 @@
 #include <numbers>
 
 #include "ensonify/core/error.hpp"
-#include "ensonify/noise/noise_chain.hpp"
+#include "ensonify/noise/image_stages.hpp"
 
 namespace ensonify {
 namespace {
@@ -32,6 +32,9 @@ double ks_distance(std::vector<double> x, const Cdf& cdf) {
 double normal_cdf(double x) { return 0.5 * std::erfc(-x / std::numbers::sqrt2); }
 double rayleigh_cdf(double x) { return 1.0 - std::exp(-0.5 * x * x); }
 
+Image2<float> disturb(const NoiseChain& chain, const Image2<float>& level, RandomKey numbers) {
+  return disturb_image(chain, level, SonarGeometry{}, numbers);
+}
 NoiseChain speckle(double sigma) { return {"test", {GaussianSpeckle<double>{sigma}}}; }
 NoiseChain rayleigh(double sigma) { return {"test", {AdditiveRayleigh<double>{sigma}}}; }
 

@@ -104,6 +104,21 @@ void print_table(const SideFigures& simulated, const SideFigures& real, std::vec
     line(band.id, number(band_value(simulated, band.id)), number(band_value(real, band.id)), bounds(band),
          verdict(inside(band, simulated)), verdict(inside(band, real)));
   }
+  for (std::size_t r = 0; r < simulated.regions.size(); ++r) {
+    fmt::print("  region {}\n", simulated.regions[r].named.name);
+    for (const AcceptanceBand& band : bands) {
+      if (band.id == noise_band) continue;  // a region is one area
+      line("  " + band.id, number(band_value(simulated.regions[r], band.id)),
+           number(band_value(real.regions[r], band.id)));
+    }
+  }
+  for (const SideFigures* side : {&simulated, &real}) {
+    if (!side->tiles.empty()) continue;
+    fmt::print(
+        "  no even tile in {}: none of {} x {} pixels has a mean level of {} or more and varies by {} or less;\n"
+        "  a lower --least-level or a --region may show what there is\n",
+        side->name, tile_rows, tile_columns, side->least_level, most_even_variation);
+  }
 }
 
 }  // namespace
@@ -111,6 +126,7 @@ void print_table(const SideFigures& simulated, const SideFigures& real, std::vec
 void run_against(const AgainstArguments& a) {
   AgainstOptions options;
   options.regions = parse_regions(a.regions);
+  options.least_level = a.least_level;
   if (a.max_images > 0) options.max_images = a.max_images;
   const PingSeries simulated_pings = open_pings(a.folder, a.split), real_pings = open_pings(a.real, a.split);
   if (a.out.empty() && !a.json && !simulated_pings.dataset) {

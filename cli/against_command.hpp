@@ -9,7 +9,8 @@ namespace ensonify::cli {
 struct AgainstArguments {
   std::string folder, real, out, split = "test";
   std::vector<std::string> regions;
-  int max_images = 0;  ///< 0: the default
+  int max_images = 0;      ///< 0: the default
+  double least_level = 0;  ///< grey level
   bool json = false;
   std::string progress = "auto";
 };

@@ -9,6 +9,7 @@
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/cli/progress.hpp"
+#include "ensonify/generators/even_tiles.hpp"
 #include "ensonify/generators/stats_json.hpp"
 #include "ensonify/generators/stats_plots.hpp"
 #include "ensonify/output/atomic_file.hpp"
@@ -24,6 +25,7 @@ struct Arguments {
   std::string out;
   StatsOptions options;
   int jobs = 0;
+  double least_level = default_least_level;
   bool json = false;
   std::string progress = "auto";
 };
@@ -51,7 +53,8 @@ void run(const Arguments& a) {
   std::optional<tbb::global_control> jobs;
   if (a.jobs > 0) jobs.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(a.jobs));
   if (!a.against.empty()) {
-    return run_against({a.folder, a.against, a.out, a.split, a.regions, a.options.max_frames, a.json, a.progress});
+    return run_against(
+        {a.folder, a.against, a.out, a.split, a.regions, a.options.max_frames, a.least_level, a.json, a.progress});
   }
   ProgressLine progress(parse_progress_style(a.progress));
   const auto on_progress = [&](int done, int total) { progress.show("stats", done, done, total); };
@@ -90,6 +93,10 @@ void add_stats(CLI::App& app) {
       ->add_option("--region", a->regions,
                    "With --against: \"[name=]row0 row1 column0 column1\", measured by itself in all images; repeat")
       ->allow_extra_args(false)
+      ->needs(against);
+  command->add_option("--least-level", a->least_level, "With --against: least mean grey level of an even tile")
+      ->check(CLI::Range(0.0, 255.0))
+      ->capture_default_str()
       ->needs(against);
   command->add_option("--out", a->out, "Folder for what is written (default: DIR/stats)")->check(some_path());
   command

@@ -36,7 +36,7 @@ constexpr std::array<Known, 10> known_figures{{
     {"acf_beam_lag2", "autocorrelation across beams, lag 2", [](const SpeckleFigures& f) { return f.beam[2]; }},
     {"acf_range_lag1", "autocorrelation along range, lag 1", [](const SpeckleFigures& f) { return f.range[1]; }},
     {"interping_corr_high_snr", "ping-to-ping correlation of the normalised speckle, brightest quarter", nullptr},
-    {"interping_corr_noise", "the same, darkest quarter", nullptr},
+    {noise_band, "the same, darkest quarter", nullptr},
     {"zero_share", "share of pixels equal to 0", [](const SpeckleFigures& f) { return f.zero_share; }},
     {"saturated_share", "share of pixels >= 254", [](const SpeckleFigures& f) { return f.saturated_share; }},
 }};
@@ -101,9 +101,15 @@ std::vector<AcceptanceBand> unbounded_bands() {
 std::optional<double> band_value(const SideFigures& side, const std::string& id) {
   const Known* known = find_known(id);
   if (!known) return std::nullopt;
-  if (!known->of_tiles) return id == "interping_corr_noise" ? side.ping_to_ping.dark : side.ping_to_ping.bright;
+  if (!known->of_tiles) return id == noise_band ? side.ping_to_ping.dark : side.ping_to_ping.bright;
   if (!side.even) return std::nullopt;
   return known->of_tiles(*side.even);
+}
+
+std::optional<double> band_value(const RegionFigures& region, const std::string& id) {
+  const Known* known = find_known(id);
+  if (!known) return std::nullopt;
+  return known->of_tiles ? known->of_tiles(region.speckle) : region.ping_to_ping;
 }
 
 std::optional<bool> inside(const AcceptanceBand& band, const SideFigures& side) {

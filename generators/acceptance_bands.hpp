@@ -9,6 +9,9 @@
 
 namespace ensonify {
 
+/// The band of ping-to-ping correlation in noise: of the darkest tiles.
+constexpr const char* noise_band = "interping_corr_noise";
+
 /// Bounds of one figure, as acceptance.json has them; none: not bounded on that side.
 struct AcceptanceBand {
   std::string id, quantity;
@@ -25,6 +28,9 @@ std::vector<AcceptanceBand> unbounded_bands();
 
 /// The figure of a band: of even tiles, and of neighbouring pings; none where the side has none.
 std::optional<double> band_value(const SideFigures& side, const std::string& id);
+
+/// The same of a region; of neighbouring pings, its own correlation.
+std::optional<double> band_value(const RegionFigures& region, const std::string& id);
 
 /// Whether the value lies within the bounds. None without value or bounds, and for pings between which the sonar moved.
 std::optional<bool> inside(const AcceptanceBand& band, const SideFigures& side);

@@ -47,9 +47,9 @@ void check_region(const NamedRegion& named, const GreyImage& image, const PingSe
                   pings.files[static_cast<std::size_t>(number)], least_region));
 }
 
-void add_tiles(const GreyImage& image, int number, ImageResult& result) {
+void add_tiles(const GreyImage& image, int number, double least_level, ImageResult& result) {
   std::vector<double> values;
-  for (const Tile& tile : even_tiles(all_tiles(image))) {
+  for (const Tile& tile : even_tiles(all_tiles(image), least_level)) {
     result.tiles.push_back({number, tile, speckle_figures(image, tile.region, key_of(number))});
     const auto tile_values = drawn_values(speckle_of(image, tile.region, number), key_of(number));
     values.insert(values.end(), tile_values.begin(), tile_values.end());
@@ -67,6 +67,8 @@ void compare(const GreyImage& image, const GreyImage& next, int number, const Ag
   };
   const std::vector<Tile> tiles = all_tiles(image), next_tiles = all_tiles(next);
   for (std::size_t t = 0; t < tiles.size(); ++t) {
+    // The first rows hold what the sonar rings with: dark, but the same in every ping, and no noise.
+    if (tiles[t].region.row0 == 0) continue;
     result.tile_pairs.push_back({(tiles[t].mean_level + next_tiles[t].mean_level) / 2, correlate(tiles[t].region)});
   }
   for (const NamedRegion& named : options.regions) result.region_pairs.push_back(correlate(named.region));
@@ -78,7 +80,7 @@ ImageResult read_one(const PingSeries& pings, int number, bool with_next, const 
   result.rows = image.levels.rows();
   result.columns = image.levels.columns();
   result.levels = sum_levels(image);
-  add_tiles(image, number, result);
+  add_tiles(image, number, options.least_level, result);
   for (const NamedRegion& named : options.regions) {
     check_region(named, image, pings, number);
     result.regions.push_back(speckle_figures(image, named.region, key_of(number)));
@@ -128,6 +130,7 @@ SideFigures describe_side(const PingSeries& pings, const AgainstOptions& options
   side.dataset = pings.dataset.has_value();
   if (side.dataset) side.split = pings.dataset->splits[static_cast<std::size_t>(pings.split)].name;
   side.images = pings.count();
+  side.least_level = options.least_level;
   side.read = spread_pairs(pings.count(), options.max_images);
   for (const int i : side.read) side.files.push_back(pings.files[static_cast<std::size_t>(i)]);
   const std::vector<bool> paired = choose_pairs(pings, side.read, side.ping_to_ping.still);

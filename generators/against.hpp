@@ -25,7 +25,8 @@ struct TileFigures {
   SpeckleFigures speckle;
 };
 
-/// A tile of any kind in two pings that follow each other: how their normalised speckle correlates.
+/// A tile of any kind, but none of the first 64 rows (ring-down), in two pings that follow each other: how their
+/// normalised speckle correlates.
 struct TilePair {
   double mean_level = 0;
   double correlation = 0;
@@ -55,6 +56,7 @@ struct SideFigures {
   std::vector<int> read;           ///< the images read, ascending
   std::vector<std::string> files;  ///< their names
   LevelSums levels;
+  double least_level = 0;  ///< of the options
   std::vector<TileFigures> tiles;
   std::optional<SpeckleFigures> even;  ///< medians over tiles; none without tiles
   Histogram normalised;                ///< of all pixels of the tiles, each tile's of mean 1
@@ -64,6 +66,7 @@ struct SideFigures {
 
 struct AgainstOptions {
   int max_images = 64;  ///< most images that are read of a side, spread evenly in neighbouring pairs
+  double least_level = default_least_level;  ///< mean of an even tile
   std::vector<NamedRegion> regions;
 };
 

@@ -64,7 +64,7 @@ json to_json(const Region& r) { return {{"rows", {r.row0, r.row1}}, {"columns", 
 json tiles_json(const SideFigures& side, const std::map<int, std::string>& file_of) {
   json entry{{"rows", tile_rows},
              {"columns", tile_columns},
-             {"least_mean_level", least_even_level},
+             {"least_mean_level", side.least_level},
              {"most_variation", most_even_variation},
              {"most_an_image", most_even_tiles},
              {"count", side.tiles.size()},

@@ -11,6 +11,7 @@ namespace ensonify {
 namespace {
 
 constexpr int picture_rows = 640;
+constexpr int most_picture_columns = 400;
 constexpr std::size_t most_points = 2000;
 
 struct NamedSide {
@@ -123,20 +124,22 @@ void frame(Image2<std::uint8_t>& picture, const Region& r) {
   for (int row = r.row0; row < r.row1; ++row) picture(row, r.column0) = picture(row, r.column1 - 1) = white;
 }
 
-ContactTile tile_of(const char* name, const PingSeries& pings, const SideFigures& side) {
+/// The middle one of the images read, plain and with its even tiles framed; its name.
+std::string add_pictures(const PingSeries& pings, const SideFigures& side,
+                         std::vector<Image2<std::uint8_t>>& pictures) {
   const std::size_t middle = side.read.size() / 2;
   const GreyImage image = read_ping(pings, side.read[middle]);
   Image2<std::uint8_t> grey(image.levels.rows(), image.levels.columns());
   std::transform(image.levels.pixels().begin(), image.levels.pixels().end(), grey.pixels().begin(),
                  [](float level) { return static_cast<std::uint8_t>(std::clamp(level, 0.0F, 255.0F)); });
-  const int columns = std::clamp(picture_rows * grey.columns() / grey.rows(), 32, 2 * picture_rows);
-  ContactTile tile{fmt::format("{}: {} {}", name, side.name, side.files[middle]),
-                   {resized(grey, picture_rows, columns)}};
+  // Beams and bins have no scale in common, so that the width is free: a pixel a beam where that is not too wide.
+  const int columns = std::min(grey.columns(), most_picture_columns);
+  pictures.push_back(resized(grey, picture_rows, columns));
   for (const TileFigures& t : side.tiles) {
     if (t.image == side.read[middle]) frame(grey, t.tile.region);
   }
-  tile.pictures.push_back(resized(grey, picture_rows, columns));
-  return tile;
+  pictures.push_back(resized(grey, picture_rows, columns));
+  return side.name + " " + side.files[middle];
 }
 
 }  // namespace
@@ -162,8 +165,11 @@ PlotSheet against_plots(const SideFigures& simulated, const SideFigures& real) {
 
 ContactSheet against_pictures(const PingSeries& simulated, const SideFigures& simulated_figures, const PingSeries& real,
                               const SideFigures& real_figures) {
-  return {"raw, range downwards; beside it with even tiles framed",
-          {{"", {tile_of("simulated", simulated, simulated_figures), tile_of("real", real, real_figures)}}}};
+  ContactTile tile;
+  const std::string left = add_pictures(simulated, simulated_figures, tile.pictures);
+  const std::string right = add_pictures(real, real_figures, tile.pictures);
+  tile.caption = "range downwards, beams to the right; each once more with its even tiles framed";
+  return {fmt::format("simulated: {}; real: {}", left, right), {{"", {std::move(tile)}}}};
 }
 
 }  // namespace ensonify

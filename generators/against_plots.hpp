@@ -9,7 +9,7 @@ namespace ensonify {
 /// One sheet, a curve a side: speckle and its Weibull laws, autocorrelations, levels, profiles, ping to ping.
 PlotSheet against_plots(const SideFigures& simulated, const SideFigures& real);
 
-/// An image of each side in the middle of those read, and beside it the same with its even tiles framed.
+/// Side by side: an image of each side, the middle one of those read, each once more with its even tiles framed.
 ContactSheet against_pictures(const PingSeries& simulated, const SideFigures& simulated_figures, const PingSeries& real,
                               const SideFigures& real_figures);
 

@@ -41,11 +41,9 @@ std::vector<Tile> all_tiles(const GreyImage& image) {
   return tiles;
 }
 
-std::vector<Tile> even_tiles(const std::vector<Tile>& tiles) {
+std::vector<Tile> even_tiles(const std::vector<Tile>& tiles, double least_level) {
   std::vector<Tile> even;
-  const auto is_even = [](const Tile& t) {
-    return t.mean_level >= least_even_level && t.variation <= most_even_variation;
-  };
+  const auto is_even = [&](const Tile& t) { return t.mean_level >= least_level && t.variation <= most_even_variation; };
   std::copy_if(tiles.begin(), tiles.end(), std::back_inserter(even), is_even);
   if (even.size() <= static_cast<std::size_t>(most_even_tiles)) return even;
   const auto place = [](const Tile& t) { return std::pair(t.region.row0, t.region.column0); };

@@ -7,7 +7,7 @@
 namespace ensonify {
 
 constexpr int tile_rows = 64, tile_columns = 32;
-constexpr double least_even_level = 20;
+constexpr double default_least_level = 20;
 constexpr double most_even_variation = 0.1;
 constexpr int most_even_tiles = 16;
 
@@ -20,8 +20,9 @@ struct Tile {
 /// All whole tiles of an image, row by row from its first pixel.
 std::vector<Tile> all_tiles(const GreyImage& image);
 
-/// Those of diffuse, even echo: mean level at least 20, variation at most 0.1; the 16 that vary least, in their order.
-/// Fully developed speckle without any texture has a variation of about 0.03 (gamma 0.5, two beams a cell).
-std::vector<Tile> even_tiles(const std::vector<Tile>& tiles);
+/// Those of diffuse, even echo: mean level at least `least_level`, variation at most 0.1; the 16 that vary least, in
+/// their order. Fully developed speckle without any texture has a variation of about 0.03 (gamma 0.5, two beams a
+/// cell).
+std::vector<Tile> even_tiles(const std::vector<Tile>& tiles, double least_level);
 
 }  // namespace ensonify

@@ -22,23 +22,27 @@ using Sides = std::array<NamedSide, 2>;
 
 Plot speckle_plot(const Sides& sides) {
   Plot plot = titled_plot("Normalised pixels of even tiles", "pixel over its local mean", "density");
+  std::vector<Series> laws;
   for (const auto& [name, side] : sides) {
-    const Histogram& h = side.normalised;
-    const auto total = static_cast<double>(std::accumulate(h.counts.begin(), h.counts.end(), std::uint64_t{0}));
-    const double width = (h.high - h.low) / static_cast<double>(h.counts.size());
-    Series points{name, {}, {}, Series::Style::points}, law{"", {}, {}};
-    for (std::size_t i = 0; i < h.counts.size() && side.even; ++i) {
-      const double x = h.low + (static_cast<double>(i) + 0.5) * width;
-      points.x.push_back(x);
-      points.y.push_back(static_cast<double>(h.counts[i]) / total / width);
-      const double k = side.even->fits.weibull_shape, z = x / side.even->fits.weibull_scale;
-      law.x.push_back(x);
-      law.y.push_back(k / side.even->fits.weibull_scale * std::pow(z, k - 1) * std::exp(-std::pow(z, k)));
+    Series points{name, {}, {}, Series::Style::points}, law;
+    if (side.even) {
+      const Histogram& h = side.normalised;
+      const auto total = static_cast<double>(std::accumulate(h.counts.begin(), h.counts.end(), std::uint64_t{0}));
+      const double width = (h.high - h.low) / static_cast<double>(h.counts.size());
+      const double k = side.even->fits.weibull_shape, scale = side.even->fits.weibull_scale;
+      for (std::size_t i = 0; i < h.counts.size(); ++i) {
+        const double x = h.low + (static_cast<double>(i) + 0.5) * width, z = x / scale;
+        points.x.push_back(x);
+        points.y.push_back(static_cast<double>(h.counts[i]) / total / width);
+        law.x.push_back(x);
+        law.y.push_back(k / scale * std::pow(z, k - 1) * std::exp(-std::pow(z, k)));
+      }
+      law.name = fmt::format("Weibull {:.2f}, {}", k, name);
     }
-    if (side.even) law.name = fmt::format("Weibull {:.2f}", side.even->fits.weibull_shape);
     plot.series.push_back(std::move(points));
-    plot.series.push_back(std::move(law));
+    laws.push_back(std::move(law));
   }
+  for (Series& law : laws) plot.series.push_back(std::move(law));
   plot.x_range = {{0.0, 2.5}};
   return plot;
 }

@@ -37,7 +37,7 @@ Plot speckle_plot(const Sides& sides) {
         law.x.push_back(x);
         law.y.push_back(k / scale * std::pow(z, k - 1) * std::exp(-std::pow(z, k)));
       }
-      law.name = fmt::format("Weibull {:.2f}, {}", k, name);
+      law.name = fmt::format("Weibull {:.2f}", k);
     }
     plot.series.push_back(std::move(points));
     laws.push_back(std::move(law));

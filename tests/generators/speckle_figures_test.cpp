@@ -9,6 +9,8 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "ensonify/generators/acceptance_bands.hpp"
+#include "ensonify/generators/against.hpp"
 #include "ensonify/generators/gamma_function.hpp"
 #include "ensonify/generators/level_figures.hpp"
 #include "ensonify/generators/ping_series.hpp"
@@ -166,6 +168,21 @@ TEST(SpeckleFigures, OfFullyDevelopedSpeckle) {
   EXPECT_NEAR(f.range[1], 0.0, 0.03);
   EXPECT_NEAR(f.contrast, 0.28, 0.02);
   EXPECT_GT(f.fits.ks.rayleigh, 0.15);
+
+  // A tile holds 2048 pixels and mirrors its border, and still says what a large area does.
+  std::vector<SpeckleFigures> tiles;
+  for (const Tile& tile : all_tiles(image)) tiles.push_back(speckle_figures(image, tile.region, key));
+  const SpeckleFigures median = median_figures(tiles);
+  std::printf(
+      "whole: shape %.3f ks %.4f ratio %.3f beam %.3f %.3f range %.3f; tiles: shape %.3f ks %.4f ratio %.3f beam "
+      "%.3f %.3f range %.3f\n",
+      f.fits.weibull_shape, f.fits.ks.weibull, f.moment_ratio, f.beam[1], f.beam[2], f.range[1],
+      median.fits.weibull_shape, median.fits.ks.weibull, median.moment_ratio, median.beam[1], median.beam[2],
+      median.range[1]);
+  EXPECT_NEAR(median.fits.weibull_shape, f.fits.weibull_shape, 0.1);
+  EXPECT_NEAR(median.moment_ratio, f.moment_ratio, 0.05);
+  EXPECT_NEAR(median.beam[1], f.beam[1], 0.02);
+  EXPECT_LT(median.fits.ks.weibull, 0.03);
 }
 
 /// Folder of the real pings (shared/real), empty where it is absent.
@@ -275,6 +292,21 @@ TEST_F(RealPings, HaveTheRecordedLevels) {
                 stats.at("range_profile_20bins")[i].get<double>(), 0.006)
         << i;
   }
+}
+
+// The bands of acceptance.json were taken from these pings: tiles found in them by rule must lie inside.
+TEST_F(RealPings, LieWithinTheirBandsInTheTilesFound) {
+  const SideFigures side = describe_side(pings, {}, [](int, int) {});
+  EXPECT_GE(side.tiles.size(), 30U);
+  const std::vector<AcceptanceBand> bands = read_acceptance_bands(pings.folder);
+  EXPECT_EQ(bands.size(), 10U);
+  for (const AcceptanceBand& band : bands) {
+    std::printf("%-26s %.4f\n", band.id.c_str(), band_value(side, band.id).value());
+    if (band.id == noise_band) continue;
+    EXPECT_EQ(inside(band, side), true) << band.id;
+  }
+  // Not 0 as in the quiet water: the darkest quarter of the tiles holds some echo.
+  EXPECT_LT(side.ping_to_ping.dark.value(), 0.25);
 }
 
 }  // namespace

@@ -104,7 +104,8 @@ void add_stats(CLI::App& app) {
                    "Read at most this many frames, spread evenly (with --against: images of a side, default 64)")
       ->check(CLI::Range(1, 100'000'000));
   command->add_option("--columns", a->options.contact_columns, "Frames of a place on the contact sheets")
-      ->check(CLI::Range(1, 64));
+      ->check(CLI::Range(1, 64))
+      ->excludes(against);
   command->add_option("--jobs", a->jobs, "Threads; the result does not depend on it (default: all cores)")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--json", a->json, "Print stats.json (against.json) and write nothing");

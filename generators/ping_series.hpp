@@ -32,7 +32,8 @@ struct PingSeries {
 /// files in it, an unfinished dataset; ConfigError: the dataset has no such split.
 PingSeries open_pings(const std::filesystem::path& folder, const std::string& split);
 
-/// Greyscale, 8 or 16 bits, at least as large as a tile (even_tiles.hpp). Throws DataError naming file and rule.
+/// Greyscale, 8 or 16 bits, at least as large as a tile (even_tiles.hpp), at most 2^24 pixels. Throws DataError naming
+/// file and rule.
 GreyImage read_ping(const PingSeries& pings, int i);
 
 /// At most `most` images, spread evenly in neighbouring pairs; ascending.

@@ -128,6 +128,15 @@ class Figures(AgainstTest):
         self.assertLess(abs(doubled["acf_range"][1]), 0.04)
         self.assertIsNone(doubled["ping_to_ping"])
 
+    def test_flat_images_have_figures_too(self):
+        for name, level in (("black", 0), ("grey", 100), ("white", 255)):
+            self.images(name, [numpy.full((128, 64), level, numpy.uint8)] * 2)
+            figures = self.against(name, "--against", name)["real"]
+            self.assertEqual(figures["levels"]["percentiles"]["50"], level)
+            self.assertEqual(figures["even_tiles"]["count"], 0 if level == 0 else 8)
+            self.assertEqual(figures["levels"]["saturated_share"], level == 255)
+            self.assertLess(abs(figures["ping_to_ping"]["brightest_quarter"]), 0.1, "jitter is no speckle")
+
     def test_threads_make_no_difference(self):
         self.images("real", [speckle(seed) for seed in range(5)])
         one, two = (self.against("real", "--against", "real", "--jobs", n) for n in (1, 2))
@@ -172,6 +181,7 @@ class Refused(AgainstTest):
         for name, make, fragment in (("colour", colour, "must be a greyscale PNG"), ("cut", cut, "cut short"),
                                      ("text", lambda p: p.write_text("no image at all"), "no PNG file"),
                                      ("void", lambda p: p.write_bytes(b""), "no PNG file"),
+                                     ("huge", lambda p: write_grey(p, numpy.zeros((4097, 4096), numpy.uint8)), "at most"),
                                      ("low", lambda p: write_grey(p, speckle(1, 63, 96)), "at least 64 rows"),
                                      ("narrow", lambda p: write_grey(p, speckle(1, 96, 31)), "32 columns")):
             make(self.images(name, [speckle(1)]) / "ping_1.PNG")
@@ -190,6 +200,7 @@ class Refused(AgainstTest):
         self.check(2, ["--out"], "good", "--against", "good")
         self.check(2, ["--against"], "good", "--region", "0 64 0 64")
         self.check(2, ["--against"], "good", "--split", "test")
+        self.check(2, ["--columns"], "good", "--against", "good", "--out", "out", "--columns", 3)
         self.check(1, ["no dataset.json"], "good")
         self.write("good/acceptance.json", json.dumps({"bands": [{"id": "beauty", "min": 1}]}))
         self.check(1, ["good/acceptance.json", "beauty", "weibull_shape"], "good", "--against", "good", "--out", "out")

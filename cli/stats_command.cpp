@@ -5,9 +5,11 @@
 #include <memory>
 #include <optional>
 
+#include "ensonify/cli/against_command.hpp"
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/cli/progress.hpp"
+#include "ensonify/generators/even_tiles.hpp"
 #include "ensonify/generators/stats_json.hpp"
 #include "ensonify/generators/stats_plots.hpp"
 #include "ensonify/output/atomic_file.hpp"
@@ -18,9 +20,12 @@ namespace {
 
 struct Arguments {
   std::string folder;
+  std::string against, split = "test";
+  std::vector<std::string> regions;
   std::string out;
   StatsOptions options;
   int jobs = 0;
+  double least_level = default_least_level;
   bool json = false;
   std::string progress = "auto";
 };
@@ -47,6 +52,10 @@ void print_summary(const DatasetStats& stats) {
 void run(const Arguments& a) {
   std::optional<tbb::global_control> jobs;
   if (a.jobs > 0) jobs.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(a.jobs));
+  if (!a.against.empty()) {
+    return run_against(
+        {a.folder, a.against, a.out, a.split, a.regions, a.options.max_frames, a.least_level, a.json, a.progress});
+  }
   ProgressLine progress(parse_progress_style(a.progress));
   const auto on_progress = [&](int done, int total) { progress.show("stats", done, done, total); };
   const DatasetStats stats = dataset_stats(open_dataset(a.folder), a.options, on_progress);
@@ -71,18 +80,39 @@ void run(const Arguments& a) {
 void add_stats(CLI::App& app) {
   auto* command = app.add_subcommand("stats", "Describe a dataset: shares, levels, ranges, poses, nearly equal frames");
   auto a = std::make_shared<Arguments>();
-  command->add_option("DIR", a->folder, "Folder of the dataset")->required()->check(some_path());
-  command->add_option("--out", a->out, "Folder for stats.json, stats.png, contact_<split>.png (default: DIR/stats)")
+  command->add_option("DIR", a->folder, "Folder of the dataset; with --against also one of PNG images")
+      ->required()
       ->check(some_path());
-  command->add_option("--max-frames", a->options.max_frames, "Read at most this many frames, spread evenly over places")
+  auto* against = command->add_option(
+      "--against", a->against, "Folder of real images (grey PNG, rows = range): measure speckle and levels of both");
+  against->check(some_path());
+  command->add_option("--split", a->split, "With --against: split of the dataset whose raw images are measured")
+      ->capture_default_str()
+      ->needs(against);
+  command
+      ->add_option("--region", a->regions,
+                   "With --against: \"[name=]row0 row1 column0 column1\", measured by itself in all images; repeat")
+      ->allow_extra_args(false)
+      ->needs(against);
+  command->add_option("--least-level", a->least_level, "With --against: least mean grey level of an even tile")
+      ->check(CLI::Range(0.0, 255.0))
+      ->capture_default_str()
+      ->needs(against);
+  command->add_option("--out", a->out, "Folder for what is written (default: DIR/stats)")->check(some_path());
+  command
+      ->add_option("--max-frames", a->options.max_frames,
+                   "Read at most this many frames, spread evenly (with --against: images of a side, default 64)")
       ->check(CLI::Range(1, 100'000'000));
   command->add_option("--columns", a->options.contact_columns, "Frames of a place on the contact sheets")
-      ->check(CLI::Range(1, 64));
+      ->check(CLI::Range(1, 64))
+      ->excludes(against);
   command->add_option("--jobs", a->jobs, "Threads; the result does not depend on it (default: all cores)")
       ->check(CLI::Range(1, 1024));
-  command->add_flag("--json", a->json, "Print stats.json and write nothing");
+  command->add_flag("--json", a->json, "Print stats.json (against.json) and write nothing");
   command->add_option("--progress", a->progress, "auto, json or none")->check(CLI::IsMember({"auto", "json", "none"}));
-  command->footer("Example:\n  ensonify stats out/quick\n  ensonify stats out/paper --max-frames 1000 --out out/look");
+  command->footer(
+      "Example:\n  ensonify stats out/quick\n  ensonify stats out/paper --max-frames 1000 --out out/look\n"
+      "  ensonify stats out/quick --against real_pings");
   command->callback([a] { run(*a); });
 }
 

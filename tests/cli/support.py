@@ -6,9 +6,13 @@ import json
 import os
 import pathlib
 import shutil
+import struct
 import subprocess
 import tempfile
 import unittest
+import zlib
+
+import numpy
 
 # Few beams and rays: the rules under test do not depend on their number.
 SONAR = """name: small
@@ -131,6 +135,31 @@ def files(folder, ignore=()):
 
 def leftovers(folder):
     return [p for p in folder.rglob("*") if ".tmp" in p.name]
+
+
+def read_grey(path):
+    """A greyscale PNG without filters, as the datasets have them."""
+    data = path.read_bytes()
+    at, packed = 8, b""
+    while at < len(data):
+        size, kind = struct.unpack(">I4s", data[at:at + 8])
+        chunk = data[at + 8:at + 8 + size]
+        if kind == b"IHDR":
+            width, height, bits = struct.unpack(">IIB", chunk[:9])
+        if kind == b"IDAT":
+            packed += chunk
+        at += 12 + size
+    lines = numpy.frombuffer(zlib.decompress(packed), numpy.uint8).reshape(height, -1)
+    assert (lines[:, 0] == 0).all() and lines.shape[1] == 1 + width * bits // 8
+    return numpy.ascontiguousarray(lines[:, 1:]).view(">u2" if bits == 16 else numpy.uint8)
+
+
+def write_grey(path, image):
+    def chunk(kind, data):
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", zlib.crc32(kind + data))
+    lines = b"".join(b"\0" + row.tobytes() for row in image)
+    path.write_bytes(b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", struct.pack(">IIBBBBB", *image.shape[::-1], 8, 0, 0, 0, 0))
+                     + chunk(b"IDAT", zlib.compress(lines)) + chunk(b"IEND", b""))
 
 
 def main():

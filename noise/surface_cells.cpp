@@ -12,6 +12,10 @@ namespace {
 /// Keeps whole numbers exact in single precision for a kilometre of world.
 constexpr float least_cube_m = 1e-4f;
 
+/// Cubes of somewhat less than the beams' distance: were they much smaller, pieces between two beams would be seen by none; were they
+/// larger, neighbours would often see the same.
+constexpr int sizes_an_octave = 8;
+
 inline std::uint32_t whole(float x) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(x))); }
 
 }  // namespace
@@ -82,9 +86,9 @@ void SurfaceCells::resolution_cells(RandomKey key, int bin, std::span<const floa
   const auto range_m = static_cast<float>(geometry_.bin_centre_m(bin));
   const auto slice_m = static_cast<float>(geometry_.bin_size_m());
   const float apart_m = std::max({beam_spacing_ * range_m, 0.25f * slice_m, least_cube_m});
-  const int octave = std::ilogb(apart_m);
-  name_cubes(range_m, elevation_rad, std::ldexp(1.0f, octave), slice_m);
-  look_up(key.child(static_cast<std::uint64_t>(octave + 64)), uniform0, uniform1);
+  const int size = static_cast<int>(std::lround(sizes_an_octave * std::log2(0.88f * apart_m)));
+  name_cubes(range_m, elevation_rad, std::exp2(static_cast<float>(size) / sizes_an_octave), slice_m);
+  look_up(key.child(static_cast<std::uint64_t>(size + 1024)), uniform0, uniform1);
 }
 
 void SurfaceCells::patches(RandomKey key, int bin, std::span<const float> elevation_rad, float patch_m,

@@ -18,8 +18,8 @@ class SurfaceCells {
   SurfaceCells(const SonarModel& sonar, const Pose& T_world_sonar);
 
   /// Uniform numbers of the resolution cells of a row, two each. A piece is a slice, one range bin thick along the line
-  /// of sight, of a cube about as wide as the beams are apart at that range (a power of two, so that the same cubes serve
-  /// an octave of ranges). A move sideways of that width, or of a bin in range, gives a new piece.
+  /// of sight, of a cube as wide as the beams are apart at that range (in steps of an eighth of an octave, so that the
+  /// same cubes serve some ranges). A move sideways of that width, or of a bin in range, gives a new piece.
   /// `elevation_rad`: of each beam, or empty for the horizontal plane of the sonar.
   void resolution_cells(RandomKey key, int bin, std::span<const float> elevation_rad, std::span<float> uniform0,
                         std::span<float> uniform1);

@@ -7,9 +7,20 @@
 #include "ensonify/sim/path_walks.hpp"
 
 namespace ensonify {
+namespace {
+
+constexpr int default_columns = 256;
+constexpr int default_tiles = 512;
+/// The rest goes where the paths are.
+constexpr double default_cells_a_tile = 0.5;
+
+}  // namespace
 
 MultipathTracer::MultipathTracer(const RayScene& scene, const SonarModel& sonar, const Water& water, int density)
-    : scene_(&scene), geometry_(sonar.geometry), fan_(sonar, density) {
+    : scene_(&scene), geometry_(sonar.geometry), fan_(sonar, density > 1 ? 2 * default_columns : default_columns) {
+  const double points = std::sqrt(static_cast<double>(density));  // pairs grow as their square
+  tiles_ = static_cast<int>(std::lround(default_tiles * points));
+  while (grid_.cells() < default_cells_a_tile * tiles_) (grid_.columns == 8 * grid_.rows ? grid_.rows : grid_.columns) *= 2;
   const double alpha = absorption_db_per_m(water, sonar.frequency_hz);
   for (int bin = 0; bin < geometry_.range_bins; ++bin) {
     row_loss_.push_back(static_cast<float>(std::pow(10.0, -0.2 * alpha * geometry_.bin_centre_m(bin))));
@@ -24,10 +35,15 @@ Image2<float> MultipathTracer::trace(const Pose& T_world_sonar, int order) const
                        geometry_.range_bins};
   // Half a path is no shorter than its longest leg.
   const auto reach_m = static_cast<float>(geometry_.range_max_m);
-  const PathHits hits(*scene_, fan_, axes, reach_m);
+  // A few walks first, which only tell where paths are.
+  const PathTiles equal(grid_, std::vector<int>(static_cast<std::size_t>(grid_.cells()), 0));
+  const PathView pilot{*scene_, fan_, equal, axes, reach_m};
+  const PathTiles tiles = PathTiles::for_energy(grid_, walked_energy(pilot, PathHits(pilot)), tiles_);
+  const PathView view{*scene_, fan_, tiles, axes, reach_m};
+  const PathHits hits(view);
   PathImage energy(fan_.columns(), bins);
-  add_joined_pairs(*scene_, hits, axes, energy);
-  add_walked_paths(*scene_, fan_, hits, axes, order, reach_m, energy);
+  add_joined_pairs(view, hits, energy);
+  add_walked_paths(view, hits, order, energy);
   Image2<float> image = energy.over_beams(fan_.columns(), geometry_.beams());
   for (int bin = 0; bin < bins.count; ++bin) {
     for (float& cell : image.row(bin)) cell *= row_loss_[static_cast<std::size_t>(bin)];

@@ -2,6 +2,7 @@
 
 #include "ensonify/core/image2.hpp"
 #include "ensonify/sim/path_fan.hpp"
+#include "ensonify/sim/path_tiles.hpp"
 #include "ensonify/sim/ray_scene.hpp"
 
 namespace ensonify {
@@ -27,6 +28,8 @@ class MultipathTracer {
   const RayScene* scene_;
   SonarGeometry geometry_;
   PathFan fan_;
+  PathTiles::Grid grid_;
+  int tiles_;
   std::vector<float> row_loss_;  ///< absorption of every bin
 };
 

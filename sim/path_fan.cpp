@@ -2,115 +2,110 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
-
-#include "ensonify/core/random.hpp"
+#include <limits>
 
 namespace ensonify {
 namespace {
 
-constexpr int default_columns = 256;
-constexpr int default_rows = 16;
 constexpr int table_steps = 2048;
 constexpr double by_pattern = 0.8;
+/// One way: where the two-way pattern is 60 dB down, as in RayFan.
 constexpr double least_one_way_db = -30.0;
 
-double fraction(double x) { return x - std::floor(x); }
-double unit_of(std::uint32_t word) { return (word + 0.5) * 0x1p-32; }
-std::uint32_t reversed3(std::uint32_t q) { return ((q & 1) << 2) | (q & 2) | (q >> 2); }
+/// Of a table equidistant over 0..1.
+float looked_up(const std::vector<float>& table, float x) {
+  const float place = x * table_steps;
+  const int i = std::clamp(static_cast<int>(place), 0, table_steps - 1);
+  return table[i] + (place - static_cast<float>(i)) * (table[i + 1] - table[i]);
+}
 
 }  // namespace
 
-PathFan::PathFan(const SonarModel& sonar, int density) {
+PathFan::PathFan(const SonarModel& sonar, int columns) : columns_(columns) {
   const RayFan fan(sonar);
-  const double finer = std::sqrt(static_cast<double>(density));  // in points: pairs grow as their square
-  columns_ = density > 1 ? 2 * default_columns : default_columns;
-  rows_ = 2 * std::max(1, static_cast<int>(std::lround(0.5 * default_rows * finer * default_columns / columns_)));
-
   const int beams = sonar.geometry.beams();
-  const auto ray_column = [&](int beam) -> const RayFan::Column& {
-    return fan.columns[static_cast<std::size_t>(std::min(beam, beams - 1)) * static_cast<std::size_t>(fan.rays_per_beam)];
-  };
+  const auto first_ray = [&](int beam) -> const RayFan::Column& { return fan.columns[beam * fan.rays_per_beam]; };
   const auto beam_edge = [&](int beam) {
-    const RayFan::Column& c = beam < beams ? ray_column(beam) : fan.columns.back();
-    return c.azimuth_rad + (beam < beams ? 0.5f : -0.5f) * c.width_rad;
+    if (beam == beams) return fan.columns.back().azimuth_rad - 0.5f * fan.columns.back().width_rad;
+    return first_ray(beam).azimuth_rad + 0.5f * first_ray(beam).width_rad;
   };
   for (int c = 0; c <= columns_; ++c) {
     const double x = static_cast<double>(c) * beams / columns_;
     const int beam = std::min(static_cast<int>(x), beams - 1);
     const double port = beam_edge(beam);
     edges_rad_.push_back(static_cast<float>(port + (x - beam) * (beam_edge(beam + 1) - port)));
-    azimuth_gain_.push_back(std::sqrt(ray_column(beam).gain));
+    azimuth_gain_.push_back(std::sqrt(first_ray(beam).gain));
   }
   int column = 0;
   for (int i = 0; i <= table_steps; ++i) {
     const double azimuth = edges_rad_.front() + (edges_rad_.back() - edges_rad_.front()) * (1.0 * i / table_steps);
     while (column + 1 < columns_ && azimuth < edges_rad_[column + 1]) ++column;
     const double within = (edges_rad_[column] - azimuth) / (edges_rad_[column] - edges_rad_[column + 1]);
-    column_at_azimuth_.push_back(static_cast<float>(column + std::clamp(within, 0.0, 1.0)));
+    u_at_azimuth_.push_back(static_cast<float>((column + std::clamp(within, 0.0, 1.0)) / columns_));
   }
 
-  const double half_sine = sonar.elevation.sine_beyond_db(least_one_way_db);
-  const double half_arc = std::asin(half_sine);
-  half_arc_sine_ = static_cast<float>(half_sine);
-  const auto pattern = [&](double phi) { return sonar.elevation.power(std::sin(phi)); };
-  std::vector<double> below{0.0};  // integral of the pattern, over equal steps of phi
-  const double step = 2.0 * half_arc / table_steps;
-  for (int i = 0; i < table_steps; ++i) below.push_back(below.back() + step * pattern(-half_arc + (i + 0.5) * step));
+  const double half_sine = std::min(sonar.elevation.sine_beyond_db(least_one_way_db), 0.9999);
+  half_sine_ = static_cast<float>(half_sine);
+  const double arc = 2.0 * std::asin(half_sine);
+  std::vector<double> below{0.0};
+  const auto phi_at = [&](double i) { return std::asin(half_sine * (2.0 * i / table_steps - 1.0)); };
+  const auto pattern = [&](double i) { return sonar.elevation.power(half_sine * (2.0 * i / table_steps - 1.0)); };
+  for (int i = 0; i < table_steps; ++i) below.push_back(below.back() + pattern(i + 0.5) * (phi_at(i + 1) - phi_at(i)));
   const double whole = below.back();
-  const auto share_below = [&](int i) {
-    return by_pattern * below[i] / whole + (1.0 - by_pattern) * i / table_steps;
-  };
   for (int i = 0; i <= table_steps; ++i) {
-    const double phi = std::asin(half_sine * (2.0 * i / table_steps - 1.0));
-    elevation_.push_back({static_cast<float>(pattern(phi)),
-                          static_cast<float>(by_pattern * pattern(phi) / whole + (1.0 - by_pattern) / (2.0 * half_arc))});
+    const double v = by_pattern * below[i] / whole + (1.0 - by_pattern) * (phi_at(i) + 0.5 * arc) / arc;
+    const double density = by_pattern * pattern(i) / whole + (1.0 - by_pattern) / arc;
+    elevation_.push_back({static_cast<float>(pattern(i)), static_cast<float>(v), static_cast<float>(density)});
   }
-
-  const RandomKey key = RandomKey::from_seed(0);  // no frame and no seed in it
-  for (int row = 0; row < rows_; ++row) {
-    int at = 0;
-    for (int c = 0; c < columns_; ++c) {
-      const auto tile = static_cast<std::uint32_t>(c / tile_columns);
-      const auto q = static_cast<std::uint32_t>(c % tile_columns);
-      const std::array<std::uint32_t, 4> own = random_words(key, static_cast<std::uint32_t>(c), row, 0);
-      const std::array<std::uint32_t, 4> shared = random_words(key, tile, row, 1);
-      const double height = (row + ((reversed3(q) ^ (shared[0] & 7)) + unit_of(own[0])) / tile_columns) / rows_;
-      const auto above = [&](int i) { return share_below(i + 1) >= height; };
-      if (share_below(at) > height) at = 0;
-      while (at + 1 < table_steps && !above(at)) ++at;
-      const double within = (height - share_below(at)) / (share_below(at + 1) - share_below(at));
-      const double phi = -half_arc + (at + std::clamp(within, 0.0, 1.0)) * step;
-      const double theta = edges_rad_[c] + (edges_rad_[c + 1] - edges_rad_[c]) * unit_of(own[1]);
-      const double turn = 2.0 * std::numbers::pi * fraction(unit_of(shared[1]) + q * 0.7548776662466927);
-      directions_.push_back({Eigen::Vector3d(std::cos(phi) * std::cos(theta), std::cos(phi) * std::sin(theta), std::sin(phi))
-                                 .cast<float>(),
-                             static_cast<float>(fraction(unit_of(shared[2]) + q * 0.618033988749895)),
-                             static_cast<float>(fraction(unit_of(shared[3]) + q * 0.5698402909980532)),
-                             static_cast<float>(std::cos(turn)), static_cast<float>(std::sin(turn))});
-    }
+  int at = 0;
+  for (int i = 0; i <= table_steps; ++i) {
+    const float v = static_cast<float>(i) / table_steps;
+    while (at + 1 < table_steps && elevation_[at + 1].below < v) ++at;
+    const float within = (v - elevation_[at].below) / (elevation_[at + 1].below - elevation_[at].below);
+    sine_at_v_.push_back(half_sine_ * ((static_cast<float>(at) + std::clamp(within, 0.0f, 1.0f)) * (2.0f / table_steps) - 1.0f));
   }
 }
 
-PathFan::Place PathFan::place_of(const Eigen::Vector3f& unit) const {
-  if (!(std::abs(unit.z()) < half_arc_sine_)) return {};
-  const float azimuth = std::atan2(unit.y(), unit.x());
-  const float at = (edges_rad_.front() - azimuth) / (edges_rad_.front() - edges_rad_.back()) * table_steps;
-  if (!(at >= 0.0f && at < table_steps)) return {};
-  const auto i = static_cast<std::size_t>(at);
-  const float share = at - static_cast<float>(i);
-  const float x = column_at_azimuth_[i] + share * (column_at_azimuth_[i + 1] - column_at_azimuth_[i]);
-  const int column = std::min(static_cast<int>(x), columns_ - 1);
+Eigen::Vector3f PathFan::direction(float u, float v) const {
+  const float place = u * static_cast<float>(columns_);
+  const int c = std::clamp(static_cast<int>(place), 0, columns_ - 1);
+  const float azimuth = edges_rad_[c] + (place - static_cast<float>(c)) * (edges_rad_[c + 1] - edges_rad_[c]);
+  const float sine = looked_up(sine_at_v_, v);
+  const float cosine = std::sqrt(1.0f - sine * sine);
+  return {cosine * std::cos(azimuth), cosine * std::sin(azimuth), sine};
+}
 
-  const float height = (unit.z() / half_arc_sine_ + 1.0f) * (0.5f * table_steps);
-  const auto j = std::min(static_cast<std::size_t>(height), static_cast<std::size_t>(table_steps - 1));
+PathFan::Place PathFan::place_of(const Eigen::Vector3f& unit) const {
+  const float height = (unit.z() / half_sine_ + 1.0f) * (0.5f * table_steps);
+  const float along = (edges_rad_.front() - std::atan2(unit.y(), unit.x())) / (edges_rad_.front() - edges_rad_.back());
+  if (!(height >= 0.0f && height < table_steps && along >= 0.0f && along < 1.0f)) return {};
+  const float u = looked_up(u_at_azimuth_, along);
+  const int column = std::min(static_cast<int>(u * static_cast<float>(columns_)), columns_ - 1);
+  const auto j = static_cast<std::size_t>(height);
   const float up = height - static_cast<float>(j);
-  const float gain = elevation_[j].gain + up * (elevation_[j + 1].gain - elevation_[j].gain);
-  const float density = elevation_[j].density + up * (elevation_[j + 1].density - elevation_[j].density);
+  const Elevation& low = elevation_[j];
+  const Elevation& high = elevation_[j + 1];
   const float width = edges_rad_[column] - edges_rad_[column + 1];
-  const float per_rad = density * static_cast<float>(rows_);
-  const float cosine = std::sqrt(1.0f - unit.z() * unit.z());
-  return {column, gain * azimuth_gain_[column], per_rad / (width * cosine), tile_columns * width, 1.0f / per_rad};
+  return {column,
+          u,
+          low.below + up * (high.below - low.below),
+          (low.gain + up * (high.gain - low.gain)) * azimuth_gain_[column],
+          width * static_cast<float>(columns_),
+          1.0f / (low.density + up * (high.density - low.density))};
+}
+
+float PathFan::distance_within(const Eigen::Vector3f& place, const Eigen::Vector3f& unit) const {
+  // The double cone z^2 = s^2 p^2 along place + t unit: a t^2 + 2 b t + c = 0 with c < 0 inside.
+  const float s2 = half_sine_ * half_sine_;
+  const float a = unit.z() * unit.z() - s2;
+  const float b = place.z() * unit.z() - s2 * place.dot(unit);
+  const float c = place.z() * place.z() - s2 * place.squaredNorm();
+  const float discriminant = b * b - a * c;
+  constexpr float never = std::numeric_limits<float>::max();
+  if (c >= 0.0f || discriminant < 0.0f) return never;
+  // The smallest positive root, in the form that does not cancel: -c / (b + root) where that is positive.
+  const float below = b + std::sqrt(discriminant);
+  return below > 0.0f ? -c / below : never;
 }
 
 }  // namespace ensonify

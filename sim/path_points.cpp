@@ -6,8 +6,6 @@
 namespace ensonify {
 namespace {
 
-/// Larger than the error of a hit's place, smaller than anything modelled.
-constexpr float lift_m = 3e-4f;
 /// Where a surface is met at less than about 6 degrees its extent is that at 6 degrees.
 constexpr float least_slant = 0.1f;
 /// Of a tile's width and a row's height: neighbours' points, at other places, fill in the rest.
@@ -22,19 +20,23 @@ void clear_point(PathPoints& p, int l) {
   p.send[l] = p.mu[l] = p.specular[l] = p.lobe_share[l] = 0.0f;
   p.exponent[l] = 2.0f;
   p.ux[l] = p.uy[l] = p.uz[l] = p.vx[l] = p.vy[l] = p.vz[l] = 0.0f;
-  p.column[l] = 0;
+  p.column[l] = p.cell[l] = 0;
 }
 
-bool set_point(PathPoints& p, int l, const RayScene& scene, const PathFan& fan, const RayAxes& axes,
-               const Eigen::Vector3f& d, float r, const Eigen::Vector3f& normal, int surface) {
+bool set_point(PathPoints& p, int l, const PathView& view, const Eigen::Vector3f& d, float r,
+               const Eigen::Vector3f& normal, int surface) {
   clear_point(p, l);
+  const RayAxes& axes = view.axes;
   const Eigen::Vector3f in_sonar(d.dot(axes.forward), d.dot(axes.left), d.dot(axes.up));
-  const PathFan::Place place = fan.place_of(in_sonar);
+  const PathFan::Place place = view.fan.place_of(in_sonar);
   if (place.column < 0) return false;
+  const int cell = view.tiles.grid().cell_of(place.u, place.v);
+  const float width_rad = view.tiles.width(cell) * place.azimuth_rad;
+  const float height_rad = view.tiles.height(cell) * place.elevation_rad;
   const float slant = normal.dot(d);
   const Eigen::Vector3f n = slant < 0.0f ? normal : Eigen::Vector3f(-normal);
   const float cos_sonar = std::max(std::abs(slant), 1e-4f);
-  const SurfaceLaw& law = scene.laws()[static_cast<std::size_t>(scene.surfaces()[static_cast<std::size_t>(surface)].material)];
+  const SurfaceLaw& law = view.scene.laws()[static_cast<std::size_t>(view.scene.surfaces()[static_cast<std::size_t>(surface)].material)];
 
   // On the tangent plane n . (r d) stays, so a change of direction e moves the place by r (e + d (n . e) / cos).
   const float horizontal = std::max(std::hypot(in_sonar.x(), in_sonar.y()), 1e-6f);
@@ -43,8 +45,8 @@ bool set_point(PathPoints& p, int l, const RayScene& scene, const PathFan& fan, 
                                   (in_sonar.x() * axes.forward + in_sonar.y() * axes.left) * (in_sonar.z() / horizontal);
   const float inverse_slant = 1.0f / std::max(cos_sonar, least_slant);
   const Eigen::Vector3f u =
-      own_share * place.width_rad * horizontal * r * (across + d * (n.dot(across) * inverse_slant));
-  const Eigen::Vector3f v = own_share * place.height_rad * r * (upwards + d * (n.dot(upwards) * inverse_slant));
+      own_share * width_rad * horizontal * r * (across + d * (n.dot(across) * inverse_slant));
+  const Eigen::Vector3f v = own_share * height_rad * r * (upwards + d * (n.dot(upwards) * inverse_slant));
 
   p.x[l] = r * d.x(), p.y[l] = r * d.y(), p.z[l] = r * d.z();
   p.dx[l] = d.x(), p.dy[l] = d.y(), p.dz[l] = d.z();
@@ -52,11 +54,12 @@ bool set_point(PathPoints& p, int l, const RayScene& scene, const PathFan& fan, 
   p.range_m[l] = r;
   p.cos_sonar[l] = cos_sonar;
   p.send[l] = place.gain / cos_sonar;
-  p.density[l] = place.points_per_sr;
+  p.density[l] = static_cast<float>(PathTiles::points) / (width_rad * height_rad * horizontal);
   p.mu[l] = law.mu, p.specular[l] = law.specular, p.exponent[l] = law.exponent, p.lobe_share[l] = law.lobe_share;
   p.ux[l] = u.x(), p.uy[l] = u.y(), p.uz[l] = u.z();
   p.vx[l] = v.x(), p.vy[l] = v.y(), p.vz[l] = v.z();
   p.column[l] = place.column;
+  p.cell[l] = cell;
   return true;
 }
 
@@ -64,29 +67,30 @@ Eigen::Vector3f lifted(const PathPoints& p, int l, const RayAxes& axes) {
   return axes.origin + Eigen::Vector3f(p.x[l] + lift_m * p.nx[l], p.y[l] + lift_m * p.ny[l], p.z[l] + lift_m * p.nz[l]);
 }
 
-PathHits::PathHits(const RayScene& scene, const PathFan& fan, const RayAxes& axes, float reach_m)
-    : block_columns(fan.columns() / (PathFan::tile_columns * block_tile_columns)),
-      block_count(block_columns * (fan.rows() / block_rows)),
-      packets(static_cast<std::size_t>(block_count) * PathFan::tile_columns) {
+PathHits::PathHits(const PathView& view)
+    : blocks((static_cast<int>(view.tiles.tiles().size()) + packet_lanes - 1) / packet_lanes),
+      packets(static_cast<std::size_t>(blocks * PathTiles::points)) {
+  const RayAxes& axes = view.axes;
+  const auto count = static_cast<int>(view.tiles.tiles().size());
   RayPacket rays;
   rays.origin.fill(axes.origin);
-  rays.valid.fill(true);
-  for (int q = 0; q < PathFan::tile_columns; ++q) {
-    for (int block = 0; block < block_count; ++block) {
-      const int first_tile = block % block_columns * block_tile_columns;
-      const int first_row = block / block_columns * block_rows;
+  rays.reach_m.fill(view.reach_m);
+  for (int block = 0; block < blocks; ++block) {
+    for (int q = 0; q < PathTiles::points; ++q) {
       for (int l = 0; l < packet_lanes; ++l) {
-        const int column = (first_tile + l / block_rows) * PathFan::tile_columns + q;
-        const Eigen::Vector3f& d = fan.direction(column, first_row + l % block_rows).unit;
+        rays.valid[l] = block * packet_lanes + l < count;
+        if (!rays.valid[l]) continue;
+        const PathTiles::Point point = view.tiles.point(view.tiles.tiles()[block * packet_lanes + l], q);
+        const Eigen::Vector3f d = view.fan.direction(point.u, point.v);
         rays.direction[l] = d.x() * axes.forward + d.y() * axes.left + d.z() * axes.up;
       }
-      const auto hits = rays.intersect(scene, reach_m, true);
-      PathPoints& out = packets[static_cast<std::size_t>(q) * static_cast<std::size_t>(block_count) + static_cast<std::size_t>(block)];
+      const auto hits = rays.intersect(view.scene, true);
+      PathPoints& out = packets[static_cast<std::size_t>(block * PathTiles::points + q)];
       for (int l = 0; l < packet_lanes; ++l) {
         if (hits[l].surface < 0)
           clear_point(out, l);
         else
-          set_point(out, l, scene, fan, axes, rays.direction[l], hits[l].distance_m, hits[l].normal, hits[l].surface);
+          set_point(out, l, view, rays.direction[l], hits[l].distance_m, hits[l].normal, hits[l].surface);
       }
     }
   }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "ensonify/sim/path_fan.hpp"
+#include "ensonify/sim/path_tiles.hpp"
 #include "ensonify/sim/ray_column.hpp"
 #include "ensonify/sim/ray_packet.hpp"
 
@@ -21,37 +22,41 @@ struct alignas(32) PathPoints {
   float mu[packet_lanes], specular[packet_lanes], exponent[packet_lanes], lobe_share[packet_lanes];
   float ux[packet_lanes], uy[packet_lanes], uz[packet_lanes];  ///< extent (m) of a tile's share along azimuth
   float vx[packet_lanes], vy[packet_lanes], vz[packet_lanes];  ///< and along elevation, on the tangent plane
-  int column[packet_lanes];
+  int column[packet_lanes];  ///< of the PathFan
+  int cell[packet_lanes];    ///< of the PathTiles' grid
 };
+
+/// Rays start this far off a surface: more than the error of a hit's place, less than anything modelled.
+inline constexpr float lift_m = 3e-4f;
 
 /// Sets a lane to no place at all.
 void clear_point(PathPoints& points, int lane);
 
+/// Where the paths of a ping may begin and end.
+struct PathView {
+  const RayScene& scene;
+  const PathFan& fan;
+  const PathTiles& tiles;
+  RayAxes axes;
+  float reach_m;  ///< of a leg
+};
+
 /// Sets a lane to what a ray from the sonar along `unit` (world axes) met, or would meet, at range_m.
 /// False, and no place, where that is outside of the fan.
-bool set_point(PathPoints& points, int lane, const RayScene& scene, const PathFan& fan, const RayAxes& axes,
-               const Eigen::Vector3f& unit, float range_m, const Eigen::Vector3f& normal, int surface);
+bool set_point(PathPoints& points, int lane, const PathView& view, const Eigen::Vector3f& unit, float range_m,
+               const Eigen::Vector3f& normal, int surface);
 
 /// A lane's place, lifted off its surface so that a ray may start there (world).
 Eigen::Vector3f lifted(const PathPoints& points, int lane, const RayAxes& axes);
 
-/// First hits of the fan's directions: one of every tile of a block of 4 x 2 tiles makes a packet, and the packets are
-/// ordered by the column within the tile, then by block column, then by block row.
+/// First hits of the tiles' points. A block is 8 tiles in a row; a packet holds one point of each of them.
 struct PathHits {
-  static constexpr int block_tile_columns = 4;
-  static constexpr int block_rows = 2;
+  explicit PathHits(const PathView& view);
 
-  PathHits(const RayScene& scene, const PathFan& fan, const RayAxes& axes, float reach_m);
-
-  int block_columns = 0;
-  int block_count = 0;
+  int blocks = 0;
   std::vector<PathPoints> packets;
 
-  /// The packet of column `within_tile` of every tile of a block.
-  const PathPoints& of(int within_tile, int block) const {
-    return packets[static_cast<std::size_t>(within_tile) * static_cast<std::size_t>(block_count) +
-                   static_cast<std::size_t>(block)];
-  }
+  const PathPoints& of(int block, int q) const { return packets[static_cast<std::size_t>(block * PathTiles::points + q)]; }
 };
 
 }  // namespace ensonify

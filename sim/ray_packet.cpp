@@ -5,7 +5,7 @@
 namespace ensonify {
 namespace {
 
-void fill(const RayPacket& packet, RTCRay8& ray, float reach, int* valid) {
+void fill(const RayPacket& packet, const std::array<float, packet_lanes>& reach, RTCRay8& ray, int* valid) {
   for (int l = 0; l < packet_lanes; ++l) {
     ray.org_x[l] = packet.origin[l].x();
     ray.org_y[l] = packet.origin[l].y();
@@ -14,7 +14,7 @@ void fill(const RayPacket& packet, RTCRay8& ray, float reach, int* valid) {
     ray.dir_y[l] = packet.direction[l].y();
     ray.dir_z[l] = packet.direction[l].z();
     ray.tnear[l] = 0.0f;
-    ray.tfar[l] = reach;
+    ray.tfar[l] = reach[l];
     ray.time[l] = 0.0f;
     ray.mask[l] = ~0u;
     ray.id[l] = 0;
@@ -25,11 +25,10 @@ void fill(const RayPacket& packet, RTCRay8& ray, float reach, int* valid) {
 
 }  // namespace
 
-std::array<RayPacket::Hit, packet_lanes> RayPacket::intersect(const RayScene& scene, float reach_m,
-                                                              bool coherent) const {
+std::array<RayPacket::Hit, packet_lanes> RayPacket::intersect(const RayScene& scene, bool coherent) const {
   alignas(32) RTCRayHit8 ray;
   alignas(32) int lanes[packet_lanes];
-  fill(*this, ray.ray, reach_m, lanes);
+  fill(*this, reach_m, ray.ray, lanes);
   for (int l = 0; l < packet_lanes; ++l) {
     ray.hit.geomID[l] = RTC_INVALID_GEOMETRY_ID;
     ray.hit.instID[0][l] = RTC_INVALID_GEOMETRY_ID;
@@ -54,7 +53,8 @@ std::array<RayPacket::Hit, packet_lanes> RayPacket::intersect(const RayScene& sc
 std::array<bool, packet_lanes> RayPacket::occluded(const RayScene& scene) const {
   alignas(32) RTCRay8 ray;
   alignas(32) int lanes[packet_lanes];
-  fill(*this, ray, 1.0f, lanes);
+  static constexpr std::array<float, packet_lanes> to_the_end{1, 1, 1, 1, 1, 1, 1, 1};
+  fill(*this, to_the_end, ray, lanes);
   RTCIntersectContext context;
   rtcInitIntersectContext(&context);
   rtcOccluded8(lanes, scene.handle(), &context, &ray);

@@ -19,10 +19,11 @@ struct RayPacket {
 
   std::array<Eigen::Vector3f, packet_lanes> origin;
   std::array<Eigen::Vector3f, packet_lanes> direction;  ///< unit for `intersect`; to the other end for `occluded`
+  std::array<float, packet_lanes> reach_m{};            ///< for `intersect`
   std::array<bool, packet_lanes> valid{};
 
-  /// First surface of every valid ray within reach_m.
-  std::array<Hit, packet_lanes> intersect(const RayScene& scene, float reach_m, bool coherent) const;
+  /// First surface of every valid ray within its reach.
+  std::array<Hit, packet_lanes> intersect(const RayScene& scene, bool coherent) const;
   /// Whether something stands between origin and origin + direction.
   std::array<bool, packet_lanes> occluded(const RayScene& scene) const;
 };

@@ -15,11 +15,11 @@ namespace ensonify {
 /// side of the normal n, with the half vector h = (i + o) / |i + o|:
 ///   sigma(i, o) = mu cos(i) cos(o) + s cos^N(n, h) G(i, o)
 ///   G(i, o)     = min(1, 2 (n.h) (n.i) / (i.h), 2 (n.h) (n.o) / (i.h))
-/// The first term is Lambert's law; the second the high-frequency Kirchhoff (geometric optics) law of facets of rms slope
-/// 1 / sqrt(N), with the masking of V-shaped grooves (Torrance and Sparrow 1967). Facets so masked send out no more than
-/// arrives (Heitz 2014, eq. 26), which bounds the albedo: integral of sigma over o / cos(i) <= pi mu + 8 pi s / (N + 2).
-/// Reciprocal. With i = o it is `backscatter(material, cos_incidence)`, but for G, which there is 1 up to 45 degrees; the
-/// direct echo keeps the law without G.
+/// The first term is Lambert's law; the second the high-frequency Kirchhoff (geometric optics) law of facets of rms
+/// slope 1 / sqrt(N), with the masking of V-shaped grooves (Torrance and Sparrow 1967). Facets so masked send out no
+/// more than arrives (Heitz 2014, eq. 26), which bounds the albedo: integral of sigma over o / cos(i) <= pi mu + 8 pi s
+/// / (N + 2). Reciprocal. With i = o it is `backscatter(material, cos_incidence)`, but for G, which there is 1 up to 45
+/// degrees; the direct echo keeps the law without G.
 struct SurfaceLaw {
   float mu = 0;
   float specular = 0;    ///< s

@@ -20,7 +20,8 @@ MultipathTracer::MultipathTracer(const RayScene& scene, const SonarModel& sonar,
     : scene_(&scene), geometry_(sonar.geometry), fan_(sonar, density > 1 ? 2 * default_columns : default_columns) {
   const double points = std::sqrt(static_cast<double>(density));  // pairs grow as their square
   tiles_ = static_cast<int>(std::lround(default_tiles * points));
-  while (grid_.cells() < default_cells_a_tile * tiles_) (grid_.columns == 8 * grid_.rows ? grid_.rows : grid_.columns) *= 2;
+  while (grid_.cells() < default_cells_a_tile * tiles_)
+    (grid_.columns == 8 * grid_.rows ? grid_.rows : grid_.columns) *= 2;
   const double alpha = absorption_db_per_m(water, sonar.frequency_hz);
   for (int bin = 0; bin < geometry_.range_bins; ++bin) {
     row_loss_.push_back(static_cast<float>(std::pow(10.0, -0.2 * alpha * geometry_.bin_centre_m(bin))));

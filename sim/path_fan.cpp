@@ -62,7 +62,8 @@ PathFan::PathFan(const SonarModel& sonar, int columns) : columns_(columns) {
     const float v = static_cast<float>(i) / table_steps;
     while (at + 1 < table_steps && elevation_[at + 1].below < v) ++at;
     const float within = (v - elevation_[at].below) / (elevation_[at + 1].below - elevation_[at].below);
-    sine_at_v_.push_back(half_sine_ * ((static_cast<float>(at) + std::clamp(within, 0.0f, 1.0f)) * (2.0f / table_steps) - 1.0f));
+    sine_at_v_.push_back(half_sine_ *
+                         ((static_cast<float>(at) + std::clamp(within, 0.0f, 1.0f)) * (2.0f / table_steps) - 1.0f));
   }
 }
 

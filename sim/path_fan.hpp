@@ -7,9 +7,9 @@
 
 namespace ensonify {
 
-/// The directions in which paths of multipath may leave and enter, as a unit square: u is the share of the beams to port,
-/// v the share of elevation below, by weight (four fifths the one-way pattern, the rest uniform: points are rare in a
-/// quiet flank). Energy is collected in `columns` equal shares of u.
+/// The directions in which paths of multipath may leave and enter, as a unit square: u is the share of the beams to
+/// port, v the share of elevation below, by weight (four fifths the one-way pattern, the rest uniform: points are rare
+/// in a quiet flank). Energy is collected in `columns` equal shares of u.
 class PathFan {
  public:
   PathFan(const SonarModel& sonar, int columns);
@@ -28,8 +28,8 @@ class PathFan {
   /// Unit vector, sonar frame.
   Eigen::Vector3f direction(float u, float v) const;
   Place place_of(const Eigen::Vector3f& unit) const;
-  /// How far a ray from a place within the fan's elevations stays within them (both in sonar axes, `unit` a unit vector).
-  /// No limit for a place outside: the ray may enter.
+  /// How far a ray from a place within the fan's elevations stays within them (both in sonar axes, `unit` a unit
+  /// vector). No limit for a place outside: the ray may enter.
   float distance_within(const Eigen::Vector3f& place, const Eigen::Vector3f& unit) const;
 
  private:

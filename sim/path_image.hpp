@@ -17,8 +17,8 @@ class PathImage {
         stride_(static_cast<std::size_t>(bins.count) + 2),
         differences_(static_cast<std::size_t>(columns) * stride_, 0.0) {}
 
-  /// Energy spread evenly from centre - extent / 2 to centre + extent / 2, but not nearer than nearest_m, and over a bin
-  /// at least. What lies outside of the window is lost.
+  /// Energy spread evenly from centre - extent / 2 to centre + extent / 2, but not nearer than nearest_m, and over a
+  /// bin at least. What lies outside of the window is lost.
   void add(int column, float centre_m, float extent_m, float nearest_m, float energy) {
     float near = bins_.place_of(std::max(centre_m - 0.5f * extent_m, nearest_m));
     float far = bins_.place_of(centre_m + 0.5f * extent_m);

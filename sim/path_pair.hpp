@@ -24,10 +24,10 @@ struct PathPair {
 ///   g_A g_B  sigma_A(sonar, B) / cos_A  sigma_B(A, sonar) / cos_B  d^-2  dOmega_A dOmega_B
 /// (spherical spreading to A and from B cancels against dA = r^2 dOmega / cos; g: one-way patterns; absorption is left
 /// to the end). Symmetric in A and B. Pairs are found in two ways: points of the fan joined to points of the fan
-/// (half of a tile's points with one each of every other tile), and `walks_per_point` walks that leave a point into a direction that its surface prefers.
-/// Divided by the sum of both densities (balance heuristic, Veach and Guibas 1995, eq. 14) every pair found counts
-/// the same, and the pole of d^-2 and the lobes of mirrors are gone: the walks' density has them too.
-/// Without `joining`, walks alone are reckoned with.
+/// (half of a tile's points with one each of every other tile), and `walks_per_point` walks that leave a point into a
+/// direction that its surface prefers. Divided by the sum of both densities (balance heuristic, Veach and Guibas 1995,
+/// eq. 14) every pair found counts the same, and the pole of d^-2 and the lobes of mirrors are gone: the walks' density
+/// has them too. Without `joining`, walks alone are reckoned with.
 inline PathPair path_pair(const PathPoints& a, int i, const PathPoints& b, int j, bool joining = true) {
   const float x = a.x[i] - b.x[j];
   const float y = a.y[i] - b.y[j];
@@ -49,8 +49,10 @@ inline PathPair path_pair(const PathPoints& a, int i, const PathPoints& b, int j
   const bistatic::Scattered at_b =
       bistatic::scatter({b.mu[j], b.specular[j], b.exponent[j], b.lobe_share[j]}, b.cos_sonar[j], facing_b, -along_b);
   // d^2 times densities; the walk's solid angle is dA cos / d^2.
-  const float to_a = walks_per_point * b.density[j] * at_b.pdf * a.range_m[i] * a.range_m[i] * facing_a / a.cos_sonar[i];
-  const float to_b = walks_per_point * a.density[i] * at_a.pdf * b.range_m[j] * b.range_m[j] * facing_b / b.cos_sonar[j];
+  const float to_a =
+      walks_per_point * b.density[j] * at_b.pdf * a.range_m[i] * a.range_m[i] * facing_a / a.cos_sonar[i];
+  const float to_b =
+      walks_per_point * a.density[i] * at_a.pdf * b.range_m[j] * b.range_m[j] * facing_b / b.cos_sonar[j];
   const float join = (joining ? d2 * joined_share : 0.0f) * a.density[i] * b.density[j];
   const float density = join + to_a + to_b;
   const float energy = a.send[i] * b.send[j] * at_a.sigma * at_b.sigma / density;

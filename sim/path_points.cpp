@@ -36,16 +36,16 @@ bool set_point(PathPoints& p, int l, const PathView& view, const Eigen::Vector3f
   const float slant = normal.dot(d);
   const Eigen::Vector3f n = slant < 0.0f ? normal : Eigen::Vector3f(-normal);
   const float cos_sonar = std::max(std::abs(slant), 1e-4f);
-  const SurfaceLaw& law = view.scene.laws()[static_cast<std::size_t>(view.scene.surfaces()[static_cast<std::size_t>(surface)].material)];
+  const SurfaceLaw& law =
+      view.scene.laws()[static_cast<std::size_t>(view.scene.surfaces()[static_cast<std::size_t>(surface)].material)];
 
   // On the tangent plane n . (r d) stays, so a change of direction e moves the place by r (e + d (n . e) / cos).
   const float horizontal = std::max(std::hypot(in_sonar.x(), in_sonar.y()), 1e-6f);
   const Eigen::Vector3f across = (in_sonar.x() * axes.left - in_sonar.y() * axes.forward) / horizontal;
-  const Eigen::Vector3f upwards = axes.up * horizontal -
-                                  (in_sonar.x() * axes.forward + in_sonar.y() * axes.left) * (in_sonar.z() / horizontal);
+  const Eigen::Vector3f upwards =
+      axes.up * horizontal - (in_sonar.x() * axes.forward + in_sonar.y() * axes.left) * (in_sonar.z() / horizontal);
   const float inverse_slant = 1.0f / std::max(cos_sonar, least_slant);
-  const Eigen::Vector3f u =
-      own_share * width_rad * horizontal * r * (across + d * (n.dot(across) * inverse_slant));
+  const Eigen::Vector3f u = own_share * width_rad * horizontal * r * (across + d * (n.dot(across) * inverse_slant));
   const Eigen::Vector3f v = own_share * height_rad * r * (upwards + d * (n.dot(upwards) * inverse_slant));
 
   p.x[l] = r * d.x(), p.y[l] = r * d.y(), p.z[l] = r * d.z();

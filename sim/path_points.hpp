@@ -22,8 +22,8 @@ struct alignas(32) PathPoints {
   float mu[packet_lanes], specular[packet_lanes], exponent[packet_lanes], lobe_share[packet_lanes];
   float ux[packet_lanes], uy[packet_lanes], uz[packet_lanes];  ///< extent (m) of a tile's share along azimuth
   float vx[packet_lanes], vy[packet_lanes], vz[packet_lanes];  ///< and along elevation, on the tangent plane
-  int column[packet_lanes];  ///< of the PathFan
-  int cell[packet_lanes];    ///< of the PathTiles' grid
+  int column[packet_lanes];                                    ///< of the PathFan
+  int cell[packet_lanes];                                      ///< of the PathTiles' grid
 };
 
 /// Rays start this far off a surface: more than the error of a hit's place, less than anything modelled.
@@ -56,7 +56,9 @@ struct PathHits {
   int blocks = 0;
   std::vector<PathPoints> packets;
 
-  const PathPoints& of(int block, int q) const { return packets[static_cast<std::size_t>(block * PathTiles::points + q)]; }
+  const PathPoints& of(int block, int q) const {
+    return packets[static_cast<std::size_t>(block * PathTiles::points + q)];
+  }
 };
 
 }  // namespace ensonify

@@ -89,7 +89,8 @@ PathTiles::Point PathTiles::point(const Tile& tile, int q) const {
   // Steps of the two- and three-dimensional golden ratio (Roberts 2018).
   const float x = (k + fraction(unit_at(tile.address, 0) + k * 0.75487767f)) / points;
   const float y = (static_cast<float>(reversed3(static_cast<std::uint32_t>(q)) ^ shift) +
-                   fraction(unit_at(tile.address, 1) + k * 0.56984029f)) / points;
+                   fraction(unit_at(tile.address, 1) + k * 0.56984029f)) /
+                  points;
   return {tile.u + tile.width * x, tile.v + tile.height * y, fraction(unit_at(tile.address, 2) + k * 0.8191725f),
           fraction(unit_at(tile.address, 3) + k * 0.6710436f), fraction(unit_at(tile.address, 4) + k * 0.5497005f)};
 }

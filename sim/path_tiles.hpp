@@ -6,8 +6,8 @@
 namespace ensonify {
 
 /// The unit square of a PathFan in tiles of 8 points each: a grid of equal cells, each halved as often as told, in
-/// elevation and azimuth in turn. Points lie at places that never change (a (0,3,2)-net, shifted by a hash of the tile):
-/// the same pose sees the same multipath.
+/// elevation and azimuth in turn. Points lie at places that never change (a (0,3,2)-net, shifted by a hash of the
+/// tile): the same pose sees the same multipath.
 class PathTiles {
  public:
   static constexpr int points = 8;  ///< of a tile

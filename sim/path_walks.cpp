@@ -49,16 +49,16 @@ Vec sample_direction(const SurfaceLaw& law, const Vec& n, const Vec& in, const C
 /// Eight walks that left the points of a packet.
 struct Walkers {
   RayPacket rays;
-  std::array<Vec, packet_lanes> normal;      ///< where they are, on the side they came from
-  std::array<int, packet_lanes> surface{};   ///< index into RayScene::surfaces
+  std::array<Vec, packet_lanes> normal;     ///< where they are, on the side they came from
+  std::array<int, packet_lanes> surface{};  ///< index into RayScene::surfaces
   std::array<float, packet_lanes> length_m{};
   std::array<float, packet_lanes> passed{};  ///< what the surfaces pass on, over the density of the choices
 };
 
 /// Sends a lane out of a place. `scale`: what its surface passes on, over sigma / pdf. A walk's last step need not go
 /// beyond the fan, where nothing sees its end.
-void leave(const PathView& view, Walkers& walkers, int l, bool last, const SurfaceLaw& law, const Vec& place, const Vec& n, const Vec& in,
-           const Choice& choice, float scale) {
+void leave(const PathView& view, Walkers& walkers, int l, bool last, const SurfaceLaw& law, const Vec& place,
+           const Vec& n, const Vec& in, const Choice& choice, float scale) {
   const Vec out = sample_direction(law, n, in, choice);
   const float cos_in = n.dot(in);
   const float cos_out = n.dot(out);
@@ -132,14 +132,15 @@ void walk(const PathView& view, const PathHits& hits, int walks, int order, bool
         const PathTiles::Point point = view.tiles.point(tiles[block * packet_lanes + l], q);
         choice[l] = Choice{point.kind, point.along, point.turn}.walk(step % walks);
         walkers.length_m[l] = 0.0f;
-        leave(view, walkers, l, order == 2, law_of(start, l), lifted(start, l, view.axes), normal_of(start, l), -unit_of(start, l),
-              choice[l], start.send[l] / (static_cast<float>(walks) * start.density[l]));
+        leave(view, walkers, l, order == 2, law_of(start, l), lifted(start, l, view.axes), normal_of(start, l),
+              -unit_of(start, l), choice[l], start.send[l] / (static_cast<float>(walks) * start.density[l]));
       }
       for (int bounce = 2; bounce <= order; ++bounce) {
         const std::array<bool, packet_lanes> seen = arrive(view, walkers, ends);
         for (int l = 0; l < packet_lanes; ++l) {
           if (!seen[l]) continue;
-          give(bounce == 2 ? path_pair(ends, l, start, l, joining) : third_order(walkers, start, ends, l), start, ends, l);
+          give(bounce == 2 ? path_pair(ends, l, start, l, joining) : third_order(walkers, start, ends, l), start, ends,
+               l);
         }
         for (int l = 0; l < packet_lanes && bounce < order; ++l) {
           if (!walkers.rays.valid[l]) continue;
@@ -157,10 +158,11 @@ void walk(const PathView& view, const PathHits& hits, int walks, int order, bool
 }  // namespace
 
 void add_walked_paths(const PathView& view, const PathHits& hits, int order, PathImage& image) {
-  walk(view, hits, walks_per_point, order, true, [&](const PathPair& path, const PathPoints& start, const PathPoints& ends, int l) {
-    image.add(start.column[l], path.half_length_m, path.extent_m, start.range_m[l], path.energy);
-    image.add(ends.column[l], path.half_length_m, path.extent_m, ends.range_m[l], path.energy);
-  });
+  walk(view, hits, walks_per_point, order, true,
+       [&](const PathPair& path, const PathPoints& start, const PathPoints& ends, int l) {
+         image.add(start.column[l], path.half_length_m, path.extent_m, start.range_m[l], path.energy);
+         image.add(ends.column[l], path.half_length_m, path.extent_m, ends.range_m[l], path.energy);
+       });
 }
 
 std::vector<float> walked_energy(const PathView& view, const PathHits& hits) {

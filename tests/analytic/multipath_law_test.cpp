@@ -58,9 +58,9 @@ TEST(MultipathLaw, BackscatterIsThatOfTheDirectEcho) {
   }
 }
 
-// What leaves over what arrives: I_out = sigma(i, o) I_in dA and I_in cos i dA arrives, so the albedo is the integral of
-// sigma over o divided by cos i. Lambert's part gives pi mu. For the lobe, dOmega_o = 4 (i.h) dOmega_h, and
-// G <= 2 (n.h)(n.i) / (i.h) or 1 makes it the share of V-grooves that i sees: at most 8 pi s / (N + 2).
+// What leaves over what arrives: I_out = sigma(i, o) I_in dA and I_in cos i dA arrives, so the albedo is the integral
+// of sigma over o divided by cos i. Lambert's part gives pi mu. For the lobe, dOmega_o = 4 (i.h) dOmega_h, and G <= 2
+// (n.h)(n.i) / (i.h) or 1 makes it the share of V-grooves that i sees: at most 8 pi s / (N + 2).
 TEST(MultipathLaw, NoSurfaceSendsOutMoreThanArrives) {
   for (const Material& material : bundled_materials()) {
     const double mu = std::pow(10.0, material.lambert_db / 10.0);

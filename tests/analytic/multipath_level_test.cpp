@@ -14,17 +14,15 @@ namespace {
 
 using namespace test;
 
-SonarModel wide_sonar() {
-  return bare_sonar({.beams = 200, .azimuth_fov_deg = 60.0, .bins = 400});
-}
+SonarModel wide_sonar() { return bare_sonar({.beams = 200, .azimuth_fov_deg = 60.0, .bins = 400}); }
 
 Image2<float> multipath_of(const Scene& scene, const SonarModel& sonar, int order = 2, int density = 1) {
   const RayScene rays(scene);
   return MultipathTracer(rays, sonar, scene.water, density).trace(Pose::Identity(), order);
 }
 
-// Inside a Lambert sphere of radius R around the sonar. What falls on a wall element from any other is the same wherever
-// it lies (cos cos' / d^2 = 1 / (4 R^2)), so a fan of solid angle Omega of unit intensity makes the irradiance
+// Inside a Lambert sphere of radius R around the sonar. What falls on a wall element from any other is the same
+// wherever it lies (cos cos' / d^2 = 1 / (4 R^2)), so a fan of solid angle Omega of unit intensity makes the irradiance
 // rho Omega / (4 pi R^2) everywhere, rho = pi mu, and each further surface multiplies by rho. Back at the sonar,
 // dOmega of wall of irradiance E gives mu E dOmega:
 //   order 2: (rho Omega)^2 / (4 pi^2 R^2),   order 3: rho times that.
@@ -40,13 +38,14 @@ TEST(MultipathLevel, InsideOfALambertSphere) {
   // One walk in thirty ends in the fan, so of order 3 a default ping finds some 250 paths.
   const double third = sum_of(multipath_of(scene, wide_sonar(), 3)) - second;
   EXPECT_NEAR(third / (rho * expected), 1.0, 0.25);
-  const double many = sum_of(multipath_of(scene, wide_sonar(), 3, 64)) - sum_of(multipath_of(scene, wide_sonar(), 2, 64));
+  const double many =
+      sum_of(multipath_of(scene, wide_sonar(), 3, 64)) - sum_of(multipath_of(scene, wide_sonar(), 2, 64));
   EXPECT_NEAR(many / (rho * expected), 1.0, 0.06);
 }
 
 // In a closed box the walls' irradiance is not even, but its sum is what the first surfaces pass on, rho Omega, and the
-// sonar receives mu E cos / r^2 dA <= mu E dA / r_min^2 of an element: at most rho^2 Omega / (pi r_min^2), and rho times
-// that for a third surface.
+// sonar receives mu E cos / r^2 dA <= mu E dA / r_min^2 of an element: at most rho^2 Omega / (pi r_min^2), and rho
+// times that for a third surface.
 TEST(MultipathLevel, AClosedBoxSendsNoMoreThanItsReflectivitiesAllow) {
   for (const double lambert_db : {-5.2, -10.0, -20.0}) {
     Scene scene = scene_of({box_mesh({-1.5F, -1.0F, -0.8F}, {2.0F, 1.2F, 1.1F})});
@@ -105,7 +104,7 @@ const Material steel{"steel", -30.0, 11.5, 400.0, "test"};
 
 // Two perpendicular patches a metre apart, and the same two meeting in an edge, where d^-2 has its pole.
 TEST(MultipathLevel, PerpendicularPatches) {
-  const Vec3 left = Vec3(-1, -1, 0).normalized();   // normal of the patch to port
+  const Vec3 left = Vec3(-1, -1, 0).normalized();  // normal of the patch to port
   const Vec3 right = Vec3(-1, 1, 0).normalized();
   for (const double gap : {0.0, 0.5}) {
     const auto patch = [&](const Vec3& normal) {
@@ -118,7 +117,8 @@ TEST(MultipathLevel, PerpendicularPatches) {
     };
     const Patch a = patch(left);
     const Patch b = patch(right);
-    for (const auto& [of_a, of_b] : {std::pair(lambert, lambert), std::pair(concrete, lambert), std::pair(steel, concrete)}) {
+    for (const auto& [of_a, of_b] :
+         {std::pair(lambert, lambert), std::pair(concrete, lambert), std::pair(steel, concrete)}) {
       // Next to an edge the sharp lobe of steel is too much for the midpoint rule.
       if (gap == 0.0 && of_a.specular_exponent > 100.0) continue;
       const double expected = integrated(a, b, of_a, of_b, 32);
@@ -128,8 +128,9 @@ TEST(MultipathLevel, PerpendicularPatches) {
   }
 }
 
-// Swapping source and receiver: what a pair of places carries from A to B it carries from B to A. The tracer's sum treats
-// its two places differently (a packet and a lane; who walks, who is found), so nothing but physics makes them agree.
+// Swapping source and receiver: what a pair of places carries from A to B it carries from B to A. The tracer's sum
+// treats its two places differently (a packet and a lane; who walks, who is found), so nothing but physics makes them
+// agree.
 TEST(MultipathLevel, PairsAreReciprocal) {
   PathPoints a;
   PathPoints b;
@@ -163,8 +164,8 @@ TEST(MultipathLevel, PairsAreReciprocal) {
   }
 }
 
-// The same in a scene: sonar - A - B - sonar arrives from B, sonar - B - A - sonar from A, in the same time. A mirror and a
-// rock, of different size and distance: the two halves of the fan receive the same energy, bin by bin.
+// The same in a scene: sonar - A - B - sonar arrives from B, sonar - B - A - sonar from A, in the same time. A mirror
+// and a rock, of different size and distance: the two halves of the fan receive the same energy, bin by bin.
 TEST(MultipathLevel, BothDirectionsOfTravelArrive) {
   const Patch a{{3.0, 0.7, 0.0}, 0.25 * Vec3(0.8, -0.6, 0), 0.2 * Vec3::UnitZ()};
   const Patch b{{3.6, -0.9, 0.0}, 0.5 * Vec3(-0.8, -0.6, 0), 0.35 * Vec3::UnitZ()};
@@ -172,7 +173,8 @@ TEST(MultipathLevel, BothDirectionsOfTravelArrive) {
   double port = 0.0;
   double starboard = 0.0;
   for (int bin = 0; bin < layer.rows(); ++bin) {
-    for (int beam = 0; beam < layer.columns(); ++beam) (beam < 100 ? port : starboard) += static_cast<double>(layer(bin, beam));
+    for (int beam = 0; beam < layer.columns(); ++beam)
+      (beam < 100 ? port : starboard) += static_cast<double>(layer(bin, beam));
   }
   ASSERT_GT(port, 0.0);
   EXPECT_NEAR(port / starboard, 1.0, 0.01);

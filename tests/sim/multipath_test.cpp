@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <numeric>
+#include <string>
 
 #include "ensonify/core/parallel.hpp"
 #include "support/image_source.hpp"
@@ -62,7 +64,8 @@ TEST(Multipath, FlatFloorAloneHasNone) {
   const Scene scene = scene_of({floor_mesh(-1.0)});
   const RayScene rays(scene);
   const SonarModel sonar = bare_sonar({.elevation_fov_deg = 40.0});
-  const Ping ping = PingTracer(rays, sonar, scene.water).trace(pose_from_xyz_rpy({0, 0, 0}, 0, 0.3, 0), {.multipath_order = 3});
+  const Ping ping =
+      PingTracer(rays, sonar, scene.water).trace(pose_from_xyz_rpy({0, 0, 0}, 0, 0.3, 0), {.multipath_order = 3});
   ASSERT_GT(sum_of(ping.echo.direct), 0.0);
   EXPECT_EQ(sum_of(ping.echo.multipath), 0.0);
 }
@@ -82,10 +85,10 @@ std::vector<double> blocks_of(const Image2<float>& layer) {
 }
 
 struct Errors {
-  double total = 0;          ///< of the whole layer
-  double share_within = 0;   ///< of its energy, that lies in blocks within 10 % of the reference
-  double mean = 0;           ///< of the blocks' errors, weighted with energy
-  double worst = 0;          ///< of the blocks that hold 90 %
+  double total = 0;         ///< of the whole layer
+  double share_within = 0;  ///< of its energy, that lies in blocks within 10 % of the reference
+  double mean = 0;          ///< of the blocks' errors, weighted with energy
+  double worst = 0;         ///< of the blocks that hold 90 %
 };
 
 /// One ping against 64 times as many pairs, in blocks of 16 bins x 16 beams.
@@ -112,18 +115,27 @@ Errors against_reference(const Scene& scene, const RayScene& rays, const SonarMo
 struct NoiseCase {
   const char* place;
   std::vector<std::size_t> waypoints;
+  double total, share_within, mean, worst;
 };
 
+// The walls of the tank are smooth: nine tenths of the energy lie in blocks that are all within 10 %. Piles with growth
+// and the rocks of a breakwater scatter between facets smaller than a beam, which a ping samples by a few walks each:
+// there the blocks that hold half or more of the energy are within 10 %.
 TEST(Multipath, NoiseOfBlocksAgainst64TimesThePairs) {
-  for (const NoiseCase& c : {NoiseCase{"test_tank", {3, 5, 9, 11}}, NoiseCase{"pier_harbor", {0, 1, 3, 5}},
-                             NoiseCase{"dam", {0, 1, 2, 3}}}) {
+  for (const NoiseCase& c : {NoiseCase{"test_tank", {3, 5, 9, 11}, 0.02, 0.95, 0.03, 0.10},
+                             NoiseCase{"pier_harbor", {0, 1, 3, 5}, 0.05, 0.65, 0.18, 0.60},
+                             NoiseCase{"breakwater", {0, 1, 2, 3}, 0.05, 0.50, 0.18, 1.50}}) {
     const Scene scene = load_scene(c.place);
     const SonarModel sonar = load_sonar("oculus_m1200d_hf");
     const RayScene rays(scene);
     for (const std::size_t waypoint : c.waypoints) {
+      SCOPED_TRACE(testing::Message() << c.place << " waypoint " << waypoint);
       const Errors errors = against_reference(scene, rays, sonar, scene.waypoints.at(waypoint));
-      std::printf("%s %zu total %.3f share %.3f mean %.3f worst %.3f\n", c.place, waypoint, errors.total,
-                  errors.share_within, errors.mean, errors.worst);
+      RecordProperty(std::string(c.place) + "_" + std::to_string(waypoint), std::to_string(errors.share_within));
+      EXPECT_LE(errors.total, c.total);
+      EXPECT_GE(errors.share_within, c.share_within);
+      EXPECT_LE(errors.mean, c.mean);
+      EXPECT_LE(errors.worst, c.worst);
     }
   }
 }
@@ -134,7 +146,8 @@ TEST(Multipath, GhostsOfABoxInTheTestTank) {
   Scene tank = load_scene("test_tank");
   std::erase_if(tank.instances, [](const Instance& i) { return i.name.rfind("wall_", 0) != 0; });
   ASSERT_EQ(tank.instances.size(), 4u);
-  const auto glass = std::find_if(tank.materials.begin(), tank.materials.end(), [](const Material& m) { return m.name == "glass"; });
+  const auto glass =
+      std::find_if(tank.materials.begin(), tank.materials.end(), [](const Material& m) { return m.name == "glass"; });
   Material wall{"mirror", -35.0, 14.6, 1100.0, "glass of the bundled table"};
   if (glass != tank.materials.end()) wall = *glass;
   tank.materials.push_back(wall);
@@ -152,17 +165,21 @@ TEST(Multipath, GhostsOfABoxInTheTestTank) {
   const RayScene rays_alone(alone);
   const SonarModel sonar = load_sonar("oculus_m1200d_hf", {{}, 8.0, {}});
 
-  const std::vector<Mirror> walls{{{3.5, 0, 0}, {-1, 0, 0}}, {{-3.5, 0, 0}, {1, 0, 0}}, {{0, 3.5, 0}, {0, -1, 0}}, {{0, -3.5, 0}, {0, 1, 0}}};
+  const std::vector<Mirror> walls{
+      {{3.5, 0, 0}, {-1, 0, 0}}, {{-3.5, 0, 0}, {1, 0, 0}}, {{0, 3.5, 0}, {0, -1, 0}}, {{0, -3.5, 0}, {0, 1, 0}}};
   std::vector<Vec3> surface;
   for (int i = 0; i <= 80; ++i) {
     for (int j = 0; j <= 60; ++j) {
       const double a = i / 80.0;
       const double z = -2.2 + 0.9 * j / 60.0;
-      surface.insert(surface.end(), {{1.2, 2.3 + 0.6 * a, z}, {1.8, 2.3 + 0.6 * a, z}, {1.2 + 0.6 * a, 2.3, z}, {1.2 + 0.6 * a, 2.9, z}});
+      surface.insert(
+          surface.end(),
+          {{1.2, 2.3 + 0.6 * a, z}, {1.8, 2.3 + 0.6 * a, z}, {1.2 + 0.6 * a, 2.3, z}, {1.2 + 0.6 * a, 2.9, z}});
     }
   }
-  for (const Pose& pose : {pose_from_xyz_rpy({-1.5, 2.2, -1.7}, 0, 0.02, 0.35), pose_from_xyz_rpy({-2.0, 2.4, -1.75}, 0, 0, 0.3),
-                           pose_from_xyz_rpy({2.4, -1.0, -1.7}, 0, 0, 1.31)}) {
+  for (const Pose& pose :
+       {pose_from_xyz_rpy({-1.5, 2.2, -1.7}, 0, 0.02, 0.35), pose_from_xyz_rpy({-2.0, 2.4, -1.75}, 0, 0, 0.3),
+        pose_from_xyz_rpy({2.4, -1.0, -1.7}, 0, 0, 1.31)}) {
     std::vector<Ghost> ghosts;
     for (const Mirror& mirror : walls) {
       for (const Ghost& g : ghosts_of(rays, mirror, surface, sonar.geometry, pose)) {
@@ -172,16 +189,21 @@ TEST(Multipath, GhostsOfABoxInTheTestTank) {
     const Image2<float> layer = MultipathTracer(rays, sonar, tank.water).trace(pose, 2);
     const Image2<float> without = MultipathTracer(rays_alone, sonar, tank.water).trace(pose, 2);
     EXPECT_EQ(sum_of(without), 0.0);
-    const float least = 1e-4f * *std::max_element(layer.pixels().begin(), layer.pixels().end());
+    // The corners of the tank are 60 dB brighter than what passes over wood.
+    const float least = 1e-6f * *std::max_element(layer.pixels().begin(), layer.pixels().end());
     int lit = 0;
     for (const Ghost& g : ghosts) {
       float most = 0.0f;
       for (int bin = std::max(g.bin - 1, 0); bin <= std::min(g.bin + 1, layer.rows() - 1); ++bin) {
-        for (int beam = std::max(g.beam - 1, 0); beam <= std::min(g.beam + 1, layer.columns() - 1); ++beam) most = std::max(most, layer(bin, beam));
+        for (int beam = std::max(g.beam - 1, 0); beam <= std::min(g.beam + 1, layer.columns() - 1); ++beam)
+          most = std::max(most, layer(bin, beam));
       }
       lit += most > least ? 1 : 0;
     }
-    std::printf("ghosts %zu lit %d\n", ghosts.size(), lit);
+    ASSERT_GT(ghosts.size(), 100u);
+    const auto all_lit =
+        std::count_if(layer.pixels().begin(), layer.pixels().end(), [&](float x) { return x > least; });
+    EXPECT_LT(static_cast<double>(all_lit), 0.5 * static_cast<double>(layer.size()));  // not by being everywhere
     EXPECT_GE(lit, 0.95 * static_cast<double>(ghosts.size()));
   }
 }

@@ -33,9 +33,9 @@ inline bool leg_free(const RayScene& scene, const Vec3& from, const Vec3& to) {
 
 /// The two ghosts of surface point `p` that `mirror` makes: sonar - mirror - p - sonar and the same path backwards. The
 /// sonar's image S' behind the mirror gives the specular point M where the line from p to S' cuts the plane, and the
-/// length |p - S'| + |p - S|. None where M is not on the mirror's surface (the first thing met on the way to it), where a
-/// leg is blocked, or where p or M is outside of the fan's nominal elevations; single ghosts outside of the window are
-/// left out.
+/// length |p - S'| + |p - S|. None where M is not on the mirror's surface (the first thing met on the way to it), where
+/// a leg is blocked, or where p or M is outside of the fan's nominal elevations; single ghosts outside of the window
+/// are left out.
 inline std::vector<Ghost> ghosts_of_point(const RayScene& scene, const Mirror& mirror, const Vec3& p,
                                           const SonarGeometry& sonar, const Pose& T_world_sonar) {
   const Vec3 s = T_world_sonar.translation();
@@ -56,7 +56,8 @@ inline std::vector<Ghost> ghosts_of_point(const RayScene& scene, const Mirror& m
   const double half_fov = 0.5 * sonar.elevation_fov_rad;
   const std::optional<int> beam_p = sonar.beam_of(at_p.azimuth_rad);
   const std::optional<int> beam_m = sonar.beam_of(at_m.azimuth_rad);
-  if (!beam_p || !beam_m || std::abs(at_p.elevation_rad) > half_fov || std::abs(at_m.elevation_rad) > half_fov) return {};
+  if (!beam_p || !beam_m || std::abs(at_p.elevation_rad) > half_fov || std::abs(at_m.elevation_rad) > half_fov)
+    return {};
   return {{*bin, *beam_p, false}, {*bin, *beam_m, true}};
 }
 

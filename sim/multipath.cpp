@@ -17,7 +17,11 @@ constexpr double default_cells_a_tile = 0.5;
 }  // namespace
 
 MultipathTracer::MultipathTracer(const RayScene& scene, const SonarModel& sonar, const Water& water, int density)
-    : scene_(&scene), geometry_(sonar.geometry), fan_(sonar, density > 1 ? 2 * default_columns : default_columns) {
+    : MultipathTracer(scene, sonar, RayFan(sonar), water, density) {}
+
+MultipathTracer::MultipathTracer(const RayScene& scene, const SonarModel& sonar, const RayFan& fan, const Water& water,
+                                 int density)
+    : scene_(&scene), geometry_(sonar.geometry), fan_(sonar, fan, density > 1 ? 2 * default_columns : default_columns) {
   const double points = std::sqrt(static_cast<double>(density));  // pairs grow as their square
   tiles_ = static_cast<int>(std::lround(default_tiles * points));
   while (grid_.cells() < default_cells_a_tile * tiles_)

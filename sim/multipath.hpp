@@ -21,6 +21,9 @@ class MultipathTracer {
  public:
   /// The scene must outlive the tracer. `density`: 1, or n for about n times the pairs and rays, for a reference.
   MultipathTracer(const RayScene& scene, const SonarModel& sonar, const Water& water, int density = 1);
+  /// With the sonar's fan at hand.
+  MultipathTracer(const RayScene& scene, const SonarModel& sonar, const RayFan& fan, const Water& water,
+                  int density = 1);
 
   /// Bins x beams. `order`: 2 or 3.
   Image2<float> trace(const Pose& T_world_sonar, int order) const;

@@ -7,10 +7,8 @@
 namespace ensonify {
 namespace {
 
-constexpr int table_steps = 2048;
+constexpr int table_steps = 1024;
 constexpr double by_pattern = 0.8;
-/// One way: where the two-way pattern is 60 dB down, as in RayFan.
-constexpr double least_one_way_db = -30.0;
 
 /// Of a table equidistant over 0..1.
 float looked_up(const std::vector<float>& table, float x) {
@@ -21,8 +19,7 @@ float looked_up(const std::vector<float>& table, float x) {
 
 }  // namespace
 
-PathFan::PathFan(const SonarModel& sonar, int columns) : columns_(columns) {
-  const RayFan fan(sonar);
+PathFan::PathFan(const SonarModel& sonar, const RayFan& fan, int columns) : columns_(columns) {
   const int beams = sonar.geometry.beams();
   const auto first_ray = [&](int beam) -> const RayFan::Column& { return fan.columns[beam * fan.rays_per_beam]; };
   const auto beam_edge = [&](int beam) {
@@ -44,7 +41,10 @@ PathFan::PathFan(const SonarModel& sonar, int columns) : columns_(columns) {
     u_at_azimuth_.push_back(static_cast<float>((column + std::clamp(within, 0.0, 1.0)) / columns_));
   }
 
-  const double half_sine = std::min(sonar.elevation.sine_beyond_db(least_one_way_db), 0.9999);
+  // The rays' arc, which ends where the two-way pattern is 60 dB down.
+  const std::vector<float>& elevations = fan.rows[0].elevation_rad;
+  const double row = static_cast<double>(elevations.back() - elevations.front()) / (fan.elevation_rays - 1);
+  const double half_sine = std::min(std::sin(0.5 * row * fan.elevation_rays), 0.9999);
   half_sine_ = static_cast<float>(half_sine);
   const double arc = 2.0 * std::asin(half_sine);
   std::vector<double> below{0.0};

@@ -12,7 +12,8 @@ namespace ensonify {
 /// in a quiet flank). Energy is collected in `columns` equal shares of u.
 class PathFan {
  public:
-  PathFan(const SonarModel& sonar, int columns);
+  /// `fan`: the sonar's.
+  PathFan(const SonarModel& sonar, const RayFan& fan, int columns);
 
   /// What the instrument is in a direction. One-way power pattern, transmitting or receiving alike.
   struct Place {

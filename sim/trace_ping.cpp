@@ -26,7 +26,7 @@ void keep_first_hits(const RayColumn& rays, int column, float range_max_m, Image
 }  // namespace
 
 PingTracer::PingTracer(const RayScene& scene, const SonarModel& sonar, const Water& water)
-    : scene_(&scene), geometry_(sonar.geometry), fan_(sonar), multipath_(scene, sonar, water) {
+    : scene_(&scene), geometry_(sonar.geometry), fan_(sonar), multipath_(scene, sonar, fan_, water) {
   const double alpha = absorption_db_per_m(water, sonar.frequency_hz);
   for (int bin = 0; bin < geometry_.range_bins; ++bin) {
     const double r = geometry_.bin_centre_m(bin);

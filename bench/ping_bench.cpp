@@ -1,6 +1,7 @@
 /// Speed of a ping against its limit: the bare Embree cast of the same rays in the same run. Counters:
 ///   ratio_to_bare  time of PingTracer::trace over the time of casting its rays alone (asked: at most 2.5)
 ///   ping_ms        core time of a whole ping with the stages of a profile (asked: at most 35 with oculus_tank)
+///   multipath_ms   time of MultipathTracer::trace, order 2, 512 x 512 (asked: at most 12 in pier_harbor)
 ///   pings_per_s    pose to image in memory, frames on all cores (asked: at least 200 on 2 cores)
 #include <benchmark/benchmark.h>
 #include <embree3/rtcore.h>
@@ -26,6 +27,7 @@ struct Setup {
         rays(scene),
         sonar(load_sonar("oculus_m1200d_hf")),
         tracer(rays, sonar, scene.water),
+        multipath(rays, sonar, scene.water),
         receiver(sonar) {
     const Trajectory path(TrajectoryPoses{}, scene, RandomKey{});
     for (int i = 0; i < poses_along_path; ++i) poses.push_back(path.at(0.5 * path.repeats_s() * i / poses_along_path));
@@ -37,6 +39,7 @@ struct Setup {
   RayScene rays;
   SonarModel sonar;
   PingTracer tracer;
+  MultipathTracer multipath;
   Receiver receiver;
   ImageSettings settings;
   std::vector<Pose> poses;
@@ -87,6 +90,7 @@ void trace_ping(benchmark::State& state, const char* place) {
   const Setup setup(place);
   double bare_s = 0;
   double traced_s = 0;
+  double multipath_s = 0;
   for (auto _ : state) {
     for (const Pose& pose : setup.poses) {
       const auto start = Clock::now();
@@ -94,6 +98,8 @@ void trace_ping(benchmark::State& state, const char* place) {
       const auto middle = Clock::now();
       benchmark::DoNotOptimize(setup.tracer.trace(pose));
       const auto end = Clock::now();
+      benchmark::DoNotOptimize(setup.multipath.trace(pose, 2));
+      multipath_s += std::chrono::duration<double>(Clock::now() - end).count();
       bare_s += std::chrono::duration<double>(middle - start).count();
       traced_s += std::chrono::duration<double>(end - middle).count();
     }
@@ -101,6 +107,7 @@ void trace_ping(benchmark::State& state, const char* place) {
   const auto pings = static_cast<double>(state.iterations()) * poses_along_path;
   state.counters["bare_ms"] = 1e3 * bare_s / pings;
   state.counters["trace_ms"] = 1e3 * traced_s / pings;
+  state.counters["multipath_ms"] = 1e3 * multipath_s / pings;
   state.counters["ratio_to_bare"] = traced_s / bare_s;
 }
 

@@ -89,6 +89,7 @@ RayScene::RayScene(const Scene& scene, const std::string& isa)
       shared_meshes_(scene.meshes.size()),
       scatter_table_(make_scatter_table(scene.materials)) {
   const FlushDenormals flush;
+  for (const Material& material : scene.materials) laws_.push_back(surface_law(material));
   std::vector<std::size_t> uses(scene.meshes.size(), 0);
   for (const Instance& instance : scene.instances) ++uses[static_cast<std::size_t>(instance.mesh)];
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ensonify/scenes/scene.hpp"
+#include "ensonify/sim/bistatic.hpp"
 
 struct RTCSceneTy;
 struct RTCDeviceTy;
@@ -35,6 +36,9 @@ class RayScene {
   /// Of material m: backscatter(i) / cos(i) at table points (see `scatter_steps`), one material after the other.
   const std::vector<float>& scatter_table() const { return scatter_table_; }
 
+  /// Of every material, for multipath.
+  const std::vector<SurfaceLaw>& laws() const { return laws_; }
+
   /// Points of a material's table are equidistant in sqrt(1 - cos i), which is linear in i near normal incidence,
   /// where the specular lobe is sharp.
   static constexpr int scatter_steps = 1023;
@@ -46,6 +50,7 @@ class RayScene {
   std::vector<std::shared_ptr<RTCSceneTy>> shared_meshes_;
   std::vector<Surface> surfaces_;
   std::vector<float> scatter_table_;
+  std::vector<SurfaceLaw> laws_;
 };
 
 }  // namespace ensonify

@@ -26,7 +26,7 @@ void keep_first_hits(const RayColumn& rays, int column, float range_max_m, Image
 }  // namespace
 
 PingTracer::PingTracer(const RayScene& scene, const SonarModel& sonar, const Water& water)
-    : scene_(&scene), geometry_(sonar.geometry), fan_(sonar) {
+    : scene_(&scene), geometry_(sonar.geometry), fan_(sonar), multipath_(scene, sonar, fan_, water) {
   const double alpha = absorption_db_per_m(water, sonar.frequency_hz);
   for (int bin = 0; bin < geometry_.range_bins; ++bin) {
     const double r = geometry_.bin_centre_m(bin);
@@ -56,6 +56,7 @@ Ping PingTracer::trace(const Pose& T_world_sonar, const TraceOptions& options) c
   const RayAxes axes{T_world_sonar.translation().cast<float>(), R.col(0), R.col(1), R.col(2)};
 
   Ping ping{{Image2<float>(bins.count, beams), {}, {}}, empty_truth()};
+  if (options.multipath_order > 1) ping.echo.multipath = multipath_.trace(T_world_sonar, options.multipath_order);
   if (options.elevation) ping.echo.elevation_rad = Image2<float>(bins.count, beams);
   std::optional<CellTruth> cells;
   if (options.cell_truth) cells.emplace(bins.count, beams, ping.truth);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "ensonify/core/echo.hpp"
+#include "ensonify/sim/multipath.hpp"
 #include "ensonify/sim/ray_fan.hpp"
 #include "ensonify/sim/ray_scene.hpp"
 
@@ -15,7 +16,7 @@ struct Ping {
 struct TraceOptions {
   bool cell_truth = false;  ///< the images of elevation, incidence and instance in the truth
   bool elevation = false;   ///< Echo::elevation_rad, which coherent speckle needs
-  int multipath_order = 0;  ///< Echo::multipath of paths that met up to this many surfaces (2 or 3); 0: none
+  int multipath_order = 0;  ///< Echo::multipath: surfaces that a path may meet, 2 or 3; 0: none
 };
 
 /// Casts one ping: mean echo intensity of the direct path, before the point spread, and the truth of the same rays.
@@ -41,6 +42,7 @@ class PingTracer {
   const RayScene* scene_;
   SonarGeometry geometry_;
   RayFan fan_;
+  MultipathTracer multipath_;
   std::vector<float> row_loss_;  ///< r^-2 and absorption of every bin
 };
 

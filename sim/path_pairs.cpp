@@ -1,0 +1,132 @@
+#include "ensonify/sim/path_pairs.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "ensonify/sim/path_pair.hpp"
+
+namespace ensonify {
+namespace {
+
+constexpr int pairs = joined_points * packet_lanes;
+
+/// 2^32 over the golden ratio: multiples are spread evenly (Knuth 1998, 6.4).
+constexpr std::uint32_t golden = 2654435769u;
+
+/// Points of one tile against a packet each of one block.
+struct Group {
+  float energy[pairs];
+  float half_length_m[pairs];
+  float extent_m[pairs];
+  const PathPoints* from[joined_points];  ///< the tile's points, in `lane`
+  const PathPoints* to[joined_points];
+  int lane;
+  bool both_ends;
+};
+
+/// Whether any of a packet and a place face each other.
+bool any_facing(const PathPoints& a, const PathPoints& b, int j) {
+  int facing = 0;
+  for (int l = 0; l < packet_lanes; ++l) {
+    const float x = a.x[l] - b.x[j];
+    const float y = a.y[l] - b.y[j];
+    const float z = a.z[l] - b.z[j];
+    const float at_b = b.nx[j] * x + b.ny[j] * y + b.nz[j] * z;
+    const float at_a = a.nx[l] * x + a.ny[l] * y + a.nz[l] * z;
+    facing += static_cast<int>(at_b > 0.0f) & static_cast<int>(at_a < 0.0f);
+  }
+  return facing > 0;
+}
+
+/// Adds up the energy; 0 where nothing faces.
+float evaluate(Group& group) {
+  float sum = 0.0f;
+  for (int q = 0; q < joined_points; ++q) {
+    const PathPoints& a = *group.to[q];
+    const PathPoints& b = *group.from[q];
+    float* energy = group.energy + q * packet_lanes;
+    float* half_length = group.half_length_m + q * packet_lanes;
+    float* extent = group.extent_m + q * packet_lanes;
+    if (!any_facing(a, b, group.lane)) {
+      std::fill(energy, energy + packet_lanes, 0.0f);
+      continue;
+    }
+    for (int l = 0; l < packet_lanes; ++l) {
+      const PathPair pair = path_pair(a, l, b, group.lane);
+      energy[l] = pair.energy;
+      half_length[l] = pair.half_length_m;
+      extent[l] = pair.extent_m;
+    }
+    for (int l = 0; l < packet_lanes; ++l) sum += energy[l];
+  }
+  return sum;
+}
+
+int pick(const Group& group, float sum, float u) {
+  float left = u * sum;
+  int last = 0;
+  for (int k = 0; k < pairs; ++k) {
+    if (group.energy[k] <= 0.0f) continue;
+    last = k;
+    left -= group.energy[k];
+    if (left < 0.0f) break;
+  }
+  return last;
+}
+
+void add(const Group& group, PathImage& image) {
+  for (int k = 0; k < pairs; ++k) {
+    if (group.energy[k] <= 0.0f) continue;
+    const PathPoints& a = *group.to[k / packet_lanes];
+    const PathPoints& b = *group.from[k / packet_lanes];
+    const int l = k % packet_lanes;
+    const float half_length = group.half_length_m[k];
+    const float extent = group.extent_m[k];
+    image.add(b.column[group.lane], half_length, extent, b.range_m[group.lane], group.energy[k]);
+    if (group.both_ends) image.add(a.column[l], half_length, extent, a.range_m[l], group.energy[k]);
+  }
+}
+
+}  // namespace
+
+void add_joined_pairs(const PathView& view, const PathHits& hits, PathImage& image) {
+  std::array<Group, packet_lanes> groups;
+  RayPacket rays;
+  int waiting = 0;
+  std::uint32_t asked = 0;
+  const auto ask = [&] {
+    for (int l = 0; l < packet_lanes; ++l) rays.valid[l] = l < waiting;
+    const auto blocked = rays.occluded(view.scene);
+    for (int l = 0; l < waiting; ++l) {
+      if (!blocked[l]) add(groups[l], image);
+    }
+    waiting = 0;
+  };
+  for (int one = 0; one < hits.blocks; ++one) {
+    for (int other = one; other < hits.blocks; ++other) {
+      // Which of two tiles' points meet: never a point itself.
+      const std::uint32_t word = golden * static_cast<std::uint32_t>(one * hits.blocks + other) >> 8;
+      const int shift = 1 + static_cast<int>(word % 7);
+      for (int tile = 0; tile < packet_lanes; ++tile) {
+        Group& group = groups[waiting];
+        group.lane = tile;
+        group.both_ends = other != one;
+        for (int q = 0; q < joined_points; ++q) {
+          const int point = (PathTiles::points / joined_points) * q + (static_cast<int>(word >> 12) + tile) % 2;
+          group.from[q] = &hits.of(one, point);
+          group.to[q] = &hits.of(other, point ^ shift);
+        }
+        const float sum = evaluate(group);
+        if (!(sum > 0.0f)) continue;
+        const int k = pick(group, sum, static_cast<float>((++asked * golden) >> 8) * 0x1p-24f);
+        const Eigen::Vector3f start = lifted(*group.from[k / packet_lanes], tile, view.axes);
+        rays.origin[waiting] = start;
+        rays.direction[waiting] = lifted(*group.to[k / packet_lanes], k % packet_lanes, view.axes) - start;
+        if (++waiting == packet_lanes) ask();
+      }
+    }
+  }
+  ask();
+}
+
+}  // namespace ensonify

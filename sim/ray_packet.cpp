@@ -1,0 +1,66 @@
+#include "ensonify/sim/ray_packet.hpp"
+
+#include <embree3/rtcore.h>
+
+namespace ensonify {
+namespace {
+
+void fill(const RayPacket& packet, const std::array<float, packet_lanes>& reach, RTCRay8& ray, int* valid) {
+  for (int l = 0; l < packet_lanes; ++l) {
+    ray.org_x[l] = packet.origin[l].x();
+    ray.org_y[l] = packet.origin[l].y();
+    ray.org_z[l] = packet.origin[l].z();
+    ray.dir_x[l] = packet.direction[l].x();
+    ray.dir_y[l] = packet.direction[l].y();
+    ray.dir_z[l] = packet.direction[l].z();
+    ray.tnear[l] = 0.0f;
+    ray.tfar[l] = reach[l];
+    ray.time[l] = 0.0f;
+    ray.mask[l] = ~0u;
+    ray.id[l] = 0;
+    ray.flags[l] = 0;
+    valid[l] = packet.valid[l] ? -1 : 0;
+  }
+}
+
+}  // namespace
+
+std::array<RayPacket::Hit, packet_lanes> RayPacket::intersect(const RayScene& scene, bool coherent) const {
+  alignas(32) RTCRayHit8 ray;
+  alignas(32) int lanes[packet_lanes];
+  fill(*this, reach_m, ray.ray, lanes);
+  for (int l = 0; l < packet_lanes; ++l) {
+    ray.hit.geomID[l] = RTC_INVALID_GEOMETRY_ID;
+    ray.hit.instID[0][l] = RTC_INVALID_GEOMETRY_ID;
+  }
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  if (coherent) context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+  rtcIntersect8(lanes, scene.handle(), &context, &ray);
+
+  std::array<Hit, packet_lanes> hits;
+  for (int l = 0; l < packet_lanes; ++l) {
+    if (!valid[l] || ray.hit.geomID[l] == RTC_INVALID_GEOMETRY_ID) continue;
+    const bool instanced = ray.hit.instID[0][l] != RTC_INVALID_GEOMETRY_ID;
+    const unsigned id = instanced ? ray.hit.instID[0][l] : ray.hit.geomID[l];
+    Eigen::Vector3f n(ray.hit.Ng_x[l], ray.hit.Ng_y[l], ray.hit.Ng_z[l]);
+    if (instanced) n = scene.surfaces()[id].normal_to_world * n;
+    hits[l] = {ray.ray.tfar[l], static_cast<int>(id), n.normalized()};
+  }
+  return hits;
+}
+
+std::array<bool, packet_lanes> RayPacket::occluded(const RayScene& scene) const {
+  alignas(32) RTCRay8 ray;
+  alignas(32) int lanes[packet_lanes];
+  static constexpr std::array<float, packet_lanes> to_the_end{1, 1, 1, 1, 1, 1, 1, 1};
+  fill(*this, to_the_end, ray, lanes);
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  rtcOccluded8(lanes, scene.handle(), &context, &ray);
+  std::array<bool, packet_lanes> blocked{};
+  for (int l = 0; l < packet_lanes; ++l) blocked[l] = valid[l] && ray.tfar[l] < 0.0f;
+  return blocked;
+}
+
+}  // namespace ensonify

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 namespace ensonify {

@@ -8,6 +8,7 @@
 #include <chrono>
 #include <opencv2/imgcodecs.hpp>
 
+#include "ensonify/core/memory.hpp"
 #include "ensonify/core/parallel.hpp"
 #include "ensonify/generators/write_block.hpp"
 #include "ensonify/output/png.hpp"
@@ -66,4 +67,8 @@ BENCHMARK(encode_raw_png)->Unit(benchmark::kMillisecond);
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  ensonify::keep_freed_pages();  // as the program does
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

@@ -9,6 +9,7 @@
 
 #include <chrono>
 
+#include "ensonify/core/memory.hpp"
 #include "ensonify/core/parallel.hpp"
 #include "ensonify/generators/form_images.hpp"
 #include "ensonify/generators/trajectory.hpp"
@@ -168,4 +169,8 @@ BENCHMARK_CAPTURE(pose_to_image, pier_harbor, "pier_harbor")
 
 }  // namespace
 
-BENCHMARK_MAIN();
+int main(int argc, char** argv) {
+  ensonify::keep_freed_pages();  // as the program does
+  benchmark::Initialize(&argc, argv);
+  benchmark::RunSpecifiedBenchmarks();
+}

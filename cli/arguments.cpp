@@ -29,21 +29,43 @@ CLI::Validator some_path() {
   return {[](std::string& text) { return text.empty() ? std::string("must not be empty") : std::string(); }, "PATH"};
 }
 
-Pose parse_pose(const std::string& text) {
+namespace {
+
+/// Six numbers, blanks or commas between, none beyond `largest`; empty where the text is anything else.
+std::vector<double> six_numbers(const std::string& text, double largest) {
   std::string blanks = text;
   std::replace(blanks.begin(), blanks.end(), ',', ' ');
   std::istringstream in(blanks);
   std::vector<double> v;
   for (double number = 0; in >> number;) v.push_back(number);
+  const bool sane = std::all_of(v.begin(), v.end(), [&](double x) { return std::abs(x) <= largest; });
+  return in.eof() && v.size() == 6 && sane ? v : std::vector<double>{};
+}
+
+}  // namespace
+
+Pose parse_pose(const std::string& text) {
   constexpr double far_off = 1e5;  // single precision ends to tell millimetres apart long before
-  const bool sane = std::all_of(v.begin(), v.end(), [](double x) { return std::abs(x) <= far_off; });
-  if (!in.eof() || v.size() != 6 || !sane) {
+  const std::vector<double> v = six_numbers(text, far_off);
+  if (v.empty()) {
     throw ConfigError(
         fmt::format("--pose \"{}\": must be six numbers, \"x y z roll pitch yaw\", metres and degrees "
                     "(z up, 0 at the water surface; positive pitch is nose down), none beyond 100000",
                     text));
   }
   return pose_from_xyz_rpy({v[0], v[1], v[2]}, radians(v[3]), radians(v[4]), radians(v[5]));
+}
+
+Twist parse_twist(const std::string& text) {
+  constexpr double fastest = 180.0;
+  const std::vector<double> v = six_numbers(text, fastest);
+  if (v.empty()) {
+    throw ConfigError(
+        fmt::format("--velocity \"{}\": must be six numbers, \"vx vy vz wx wy wz\" in the sonar's frame, m/s and deg/s, "
+                    "none beyond {}",
+                    text, fastest));
+  }
+  return {{v[0], v[1], v[2]}, {radians(v[3]), radians(v[4]), radians(v[5])}};
 }
 
 Scene open_scene(const std::string& path_or_name, std::uint64_t layout) {

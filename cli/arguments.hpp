@@ -6,6 +6,7 @@
 
 #include "ensonify/core/pose.hpp"
 #include "ensonify/scenes/scene.hpp"
+#include "ensonify/sim/ping_motion.hpp"
 
 namespace ensonify::cli {
 
@@ -18,6 +19,9 @@ CLI::Validator some_path();
 
 /// "x y z roll pitch yaw", metres and degrees, blanks or commas between. Throws ConfigError.
 Pose parse_pose(const std::string& text);
+
+/// "vx vy vz wx wy wz" in the sonar's frame, m/s and deg/s. Throws ConfigError.
+Twist parse_twist(const std::string& text);
 
 /// A scene YAML, a bundled name, or a mesh file by itself (any other extension). Its warnings go to standard error.
 Scene open_scene(const std::string& path_or_name, std::uint64_t layout);

@@ -16,6 +16,7 @@
 #include "ensonify/cli/streams.hpp"
 #include "ensonify/config/reader.hpp"
 #include "ensonify/core/error.hpp"
+#include "ensonify/core/memory.hpp"
 
 namespace {
 
@@ -87,6 +88,7 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  keep_freed_pages();
   cli::hold_standard_streams();
   cli::end_at_signals();
   return cli::finish_standard_output(run(argc, argv));

@@ -24,6 +24,7 @@ struct Arguments {
   std::uint64_t layout = 0;
   std::string sonar;
   std::string pose;
+  std::string velocity = "0 0 0 0 0 0";
   std::string noise = "paper";
   std::uint64_t seed = 0;
   std::uint64_t frame = 0;
@@ -69,7 +70,9 @@ void run(const Arguments& a) {
   const RandomKey key = RandomKey::from_seed(a.seed);
   SampledValues sampled;
   const ImageSettings settings{sample_noise(profile, key.child("noise parameters"), sampled), 0.0, 8};
-  Ping ping = PingTracer(rays, sonar, scene.water).trace(T_world_sonar, trace_options(settings.noise, true));
+  TraceOptions options = trace_options(settings.noise, true);
+  options.motion = parse_twist(a.velocity);
+  const Ping ping = PingTracer(rays, sonar, scene.water).trace(T_world_sonar, options);
   const RandomKey first = key.child("noise");
   const PingSetting setting{T_world_sonar, key.child("surface").child(scene.name), key.child("device").child(sonar.name),
                             a.frame == 0 ? first : first.child(a.frame)};
@@ -123,6 +126,10 @@ void add_ping(CLI::App& app) {
                    "\"x y z roll pitch yaw\" of the sonar: metres (z up, 0 at the surface) and degrees "
                    "(positive pitch is nose down)")
       ->required();
+  command
+      ->add_option("--velocity", a->velocity,
+                   "\"vx vy vz wx wy wz\" of the sonar in its own frame while the sound is under way: m/s and deg/s")
+      ->capture_default_str();
   command
       ->add_option("--out", a->out,
                    "Folder for raw.png clean.png mask.png labels.png fan.png echo.exr truth.exr ping.json")

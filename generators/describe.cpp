@@ -71,6 +71,7 @@ json describe_trajectory(const TrajectoryPoses& trajectory) {
   json entry = describe_path(trajectory.path);
   entry["rate_hz"] = trajectory.rate_hz;
   entry["clearance_m"] = trajectory.clearance_m;
+  if (trajectory.motion_during_ping) entry["motion_during_ping"] = true;
   if (!std::holds_alternative<RecordedPath>(trajectory.path)) {
     entry["speed_mps"] = describe(trajectory.speed_mps);
     entry["rounding_m"] = trajectory.rounding_m;

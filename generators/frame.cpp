@@ -205,6 +205,7 @@ FramePose FrameMaker::pose(int index) const {
   if (!std::holds_alternative<Constant>(spec.speed_mps) && where.trajectory->speed_mps()) {
     frame.sampled.emplace_back("trajectory.speed_mps", *where.trajectory->speed_mps());
   }
+  if (spec.motion_during_ping) frame.motion = twist_at(*where.trajectory, time_s);
   const std::string& name = places_[frame.place].name;
   const RandomKey drift_key = RandomKey::from_seed(recipe_.seed).child("drift").child(name);
   frame.T_world_sonar_est = drifted(frame.T_world_sonar, recipe_.drift, drift_key, time_s);
@@ -250,7 +251,9 @@ Frame FrameMaker::make(int index) const {
   const RandomKey set = RandomKey::from_seed(recipe_.seed);
   const PingSetting setting{frame.pose.T_world_sonar, set.child("surface").child(places_[frame.pose.place].name),
                             set.child("device").child(sonar_.name), key.child("noise")};
-  Ping ping = this->ping(frame.pose, trace_options(settings.noise, recipe_.cell_truth));
+  TraceOptions options = trace_options(settings.noise, recipe_.cell_truth);
+  options.motion = frame.pose.motion;
+  Ping ping = this->ping(frame.pose, options);
   frame.images = window_varies(recipe_) ? form_images(Receiver(frame.sonar), ping, settings, setting)
                                         : form_images(receiver_, ping, settings, setting);
   frame.truth = std::move(ping.truth);

@@ -22,6 +22,7 @@ struct FramePose {
   std::optional<double> time_s;  ///< empty for random poses
   Pose T_world_sonar = Pose::Identity();
   Pose T_world_sonar_est = Pose::Identity();
+  Twist motion;  ///< while the sound is under way, where the split asks for it
   SampledValues sampled;
 };
 

@@ -120,6 +120,7 @@ TrajectoryPoses read_trajectory(Reader trajectory) {
   TrajectoryPoses result;
   result.path = read_path(trajectory, result.where);
   result.rate_hz = trajectory.number_or("rate_hz", result.rate_hz, {0.001, 1000.0});
+  result.motion_during_ping = trajectory.boolean_or("motion_during_ping", false);
   if (std::holds_alternative<RecordedPath>(result.path)) {
     for (const char* key : {"speed_mps", "rounding_m"}) {
       if (trajectory.has(key)) trajectory.fail(key, "does not go with 'file', whose poses have times; leave it out");

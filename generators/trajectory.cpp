@@ -157,6 +157,20 @@ double Trajectory::next_look_s(double time_s, double step_m) const {
   return std::max(std::min(next_s, end_s), std::nextafter(time_s, never));
 }
 
+Twist twist_at(const Trajectory& trajectory, double time_s) {
+  constexpr double half_step_s = 0.01;
+  const double before_s = std::max(0.0, time_s - half_step_s);
+  const double after_s = std::min(time_s + half_step_s, trajectory.lasts_s());
+  const double step_s = after_s - before_s;
+  if (!(step_s > 0.0)) return {};
+  const Pose before = trajectory.at(before_s);
+  const Pose after = trajectory.at(after_s);
+  const Eigen::Matrix3d R = trajectory.at(time_s).linear();
+  const Eigen::AngleAxisd turned(before.linear().transpose() * after.linear());
+  return {R.transpose() * (after.translation() - before.translation()) / step_s,
+          turned.angle() / step_s * turned.axis()};
+}
+
 Motion motion_of(const Trajectory& trajectory, double until_s) {
   constexpr double step_s = 0.05;
   constexpr double longest_s = 3600.0;

@@ -9,6 +9,7 @@
 #include "ensonify/generators/place.hpp"
 #include "ensonify/generators/smoothed_way.hpp"
 #include "ensonify/generators/trajectory_spec.hpp"
+#include "ensonify/sim/ping_motion.hpp"
 
 namespace ensonify {
 
@@ -49,6 +50,9 @@ class Trajectory {
   AttitudeNoise noise_;
   RandomKey noise_key_;
 };
+
+/// Velocity and turn rate at a time, in the sonar's frame: central differences over 20 ms, within what is swum.
+Twist twist_at(const Trajectory& trajectory, double time_s);
 
 /// How a trajectory moves, by differences over 0.05 s at 20 Hz over at most an hour: true poses, rocking included.
 struct Motion {

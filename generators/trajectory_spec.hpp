@@ -80,6 +80,7 @@ struct TrajectoryPoses {
   double rounding_m = 1;   ///< see `SmoothedWay`
   double clearance_m = 0;  ///< radius that must be free all along
   AttitudeNoise attitude_noise;
+  bool motion_during_ping = false;  ///< the sonar goes on while the sound is under way (see `receive_in_motion`)
   std::string where;  ///< file, line and key, for errors that show only once the place is built
 };
 

@@ -26,7 +26,7 @@ void keep_first_hits(const RayColumn& rays, int column, float range_max_m, Image
 }  // namespace
 
 PingTracer::PingTracer(const RayScene& scene, const SonarModel& sonar, const Water& water)
-    : scene_(&scene), geometry_(sonar.geometry), fan_(sonar), multipath_(scene, sonar, fan_, water) {
+    : scene_(&scene), geometry_(sonar.geometry), sound_speed_mps_(sound_speed_mps(water)), fan_(sonar), multipath_(scene, sonar, fan_, water) {
   const double alpha = absorption_db_per_m(water, sonar.frequency_hz);
   for (int bin = 0; bin < geometry_.range_bins; ++bin) {
     const double r = geometry_.bin_centre_m(bin);
@@ -94,6 +94,9 @@ Ping PingTracer::trace(const Pose& T_world_sonar, const TraceOptions& options) c
       float* elevation = &ping.echo.elevation_rad(bin, block);
       for (int b = 0; b < in_block; ++b) elevation[b] = energy(b, bin) > 0.0f ? moment(b, bin) / energy(b, bin) : 0.0f;
     }
+  }
+  if (!options.motion.still()) {
+    ping.echo = receive_in_motion(ping.echo, geometry_, options.motion, sound_speed_mps_);
   }
   return ping;
 }

@@ -2,6 +2,7 @@
 
 #include "ensonify/core/echo.hpp"
 #include "ensonify/sim/multipath.hpp"
+#include "ensonify/sim/ping_motion.hpp"
 #include "ensonify/sim/ray_fan.hpp"
 #include "ensonify/sim/ray_scene.hpp"
 
@@ -16,6 +17,7 @@ struct Ping {
 struct TraceOptions {
   bool cell_truth = false;  ///< the images of elevation, incidence and instance in the truth
   bool elevation = false;   ///< Echo::elevation_rad, which coherent speckle needs
+  Twist motion{};           ///< while the sound is under way; truth stays that of the moment of the pulse
   int multipath_order = 0;  ///< Echo::multipath: surfaces that a path may meet, 2 or 3; 0: none
 };
 
@@ -41,6 +43,7 @@ class PingTracer {
 
   const RayScene* scene_;
   SonarGeometry geometry_;
+  double sound_speed_mps_;
   RayFan fan_;
   MultipathTracer multipath_;
   std::vector<float> row_loss_;  ///< r^-2 and absorption of every bin

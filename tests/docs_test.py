@@ -50,7 +50,7 @@ class DocsTest(unittest.TestCase):
                 (folder / content[0]).write_text(content[1])
                 continue
             done = subprocess.run(["bash", "-euo", "pipefail", "-c", content], cwd=folder, env=environment, text=True,
-                                  capture_output=True, stdin=subprocess.DEVNULL, timeout=300)
+                                  capture_output=True, stdin=subprocess.DEVNULL, timeout=300 * float(os.environ.get("ENSONIFY_TEST_PATIENCE", 1)))
             if done.returncode != 0:
                 failures.append(f"$ {content}\n{done.stdout}{done.stderr}")
         return failures

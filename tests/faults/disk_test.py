@@ -12,7 +12,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from faults import TINY, FaultTest  # noqa: E402
+from faults import PATIENCE, TINY, FaultTest  # noqa: E402
 from support import leftovers, main, manifest  # noqa: E402
 
 KIB = 1024
@@ -69,7 +69,7 @@ class FullDisk(FaultTest):
     def test_a_full_file_system(self):
         (self.folder / "full").mkdir()
         process = subprocess.run([str(self.program), *VOXELS, "full/grid.ply"], cwd=self.folder, capture_output=True,
-                                 text=True, preexec_fn=on_full_tmpfs, timeout=30, env=self.environment())
+                                 text=True, preexec_fn=on_full_tmpfs, timeout=30 * PATIENCE, env=self.environment())
         if process.returncode == 77:
             self.skipTest("no right to mount a file system here")
         self.assertEqual(process.returncode, 1, process.stderr)
@@ -82,18 +82,18 @@ class FullDisk(FaultTest):
                     code, _, err = self.run_limited(*words, stdout=full)
                 self.assertEqual((code, "standard output" in err), (1, True), err)
                 closed = subprocess.run(["/bin/sh", "-c", '"$0" "$@" >&-', self.program, *words], cwd=self.folder,
-                                        capture_output=True, text=True, timeout=30, env=self.environment())
+                                        capture_output=True, text=True, timeout=30 * PATIENCE, env=self.environment())
                 self.assertEqual(closed.returncode, 1, closed.stderr)
                 self.assertIn("standard output", closed.stderr)
         all_closed = subprocess.run(["/bin/sh", "-c", '"$0" "$@" <&- >&- 2>&-', self.program, *VOXELS, "b.npz"],
-                                    cwd=self.folder, timeout=30, env=self.environment())
+                                    cwd=self.folder, timeout=30 * PATIENCE, env=self.environment())
         self.assertEqual(all_closed.returncode, 1)
         self.assertEqual((self.folder / "a.npz").read_bytes(), (self.folder / "b.npz").read_bytes())
 
     def test_a_reader_that_has_seen_enough_is_no_fault(self):
         for words in ("sonar list", "scene list", "sonar list --markdown", "--help"):
             done = subprocess.run(["/bin/bash", "-c", f'set -o pipefail; "$0" {words} | true', self.program],
-                                  cwd=self.folder, capture_output=True, text=True, timeout=30, env=self.environment())
+                                  cwd=self.folder, capture_output=True, text=True, timeout=30 * PATIENCE, env=self.environment())
             self.assertEqual((done.returncode, done.stderr), (0, ""), words)
 
 
@@ -140,7 +140,7 @@ class OddPlaces(FaultTest):
             ctypes.CDLL(None).mount(b"none", b"full", None, 1 | 32, None)  # read-only, remount
         (self.folder / "full").mkdir()
         done = subprocess.run([str(self.program), *PING, "full/ping"], cwd=self.folder, capture_output=True, text=True,
-                              preexec_fn=read_only, timeout=30, env=self.environment())
+                              preexec_fn=read_only, timeout=30 * PATIENCE, env=self.environment())
         if done.returncode == 77:
             self.skipTest("no right to mount a file system here")
         self.assertEqual(done.returncode, 1, done.stderr)
@@ -151,7 +151,7 @@ class Stopped(FaultTest):
     seconds = 60
 
     def wait_for(self, path, process):
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + 30 * PATIENCE
         while not path.exists():
             self.assertIsNone(process.poll(), "ended before it could be disturbed")
             self.assertLess(time.monotonic(), deadline)
@@ -165,7 +165,7 @@ class Stopped(FaultTest):
             self.wait_for(self.folder / sign, process)
             for _ in range(100):
                 shutil.rmtree(self.folder / "out", ignore_errors=True)
-            _, err = process.communicate(timeout=self.seconds)
+            _, err = process.communicate(timeout=self.seconds * PATIENCE)
             self.assertEqual(process.returncode, 1, err)
             self.assertIn(b"out", err)
             self.assertFalse((self.folder / "out/dataset.json").exists())
@@ -197,7 +197,7 @@ class Stopped(FaultTest):
                 process = self.start(*words)
                 time.sleep(whole * (0.7 + 0.1 * step))
                 process.send_signal(sent)
-                process.communicate(timeout=self.seconds)
+                process.communicate(timeout=self.seconds * PATIENCE)
                 # The negative one: before the program had begun.
                 self.assertIn(process.returncode, (0, 128 + sent, -sent), name)
                 self.assertEqual(leftovers(self.folder), [], name)
@@ -208,7 +208,7 @@ class Stopped(FaultTest):
         process = self.start(*PING, "out")
         self.wait_for(self.folder / "out/raw.png", process)
         process.send_signal(signal.SIGTERM)
-        process.communicate(timeout=self.seconds)
+        process.communicate(timeout=self.seconds * PATIENCE)
         self.assertIn(process.returncode, (0, 143))
         self.assertEqual(leftovers(self.folder), [])
 

@@ -27,6 +27,10 @@ def limited(file_bytes=None, memory_bytes=None):
     return apply
 
 
+# Sanitized programs are slower: how many times longer one may take.
+PATIENCE = float(os.environ.get("ENSONIFY_TEST_PATIENCE", 1))
+
+
 class FaultTest(ProgramTest):
     """Never a crash, never a hang, never an empty complaint."""
 
@@ -42,7 +46,7 @@ class FaultTest(ProgramTest):
         """Runs to the end within the limits; returns (code, standard output, standard error)."""
         process = self.start(*words, file_bytes=file_bytes, **more)
         try:
-            out, err = process.communicate(timeout=seconds or self.seconds)
+            out, err = process.communicate(timeout=(seconds or self.seconds) * PATIENCE)
         except subprocess.TimeoutExpired:
             process.kill()
             process.communicate()
@@ -66,7 +70,7 @@ class FaultTest(ProgramTest):
         """Like run_limited, and holds the peak of memory to its limit: (code, what it said)."""
         with open(os.devnull, "wb") as nothing, (self.folder / "said.txt").open("wb") as said:
             process = self.start(*words, stdout=nothing, stderr=said)
-        timer = threading.Timer(self.seconds, process.kill)
+        timer = threading.Timer(self.seconds * PATIENCE, process.kill)
         timer.start()
         _, status, usage = os.wait4(process.pid, 0)
         timer.cancel()

@@ -7,7 +7,7 @@ import sys
 import time
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from faults import TINY, FaultTest  # noqa: E402
+from faults import PATIENCE, TINY, FaultTest  # noqa: E402
 from support import leftovers, main, manifest  # noqa: E402
 
 
@@ -24,11 +24,11 @@ class Together(FaultTest):
         return process
 
     def end(self, process):
-        out, err = process.communicate(timeout=self.seconds)
+        out, err = process.communicate(timeout=self.seconds * PATIENCE)
         return process.returncode, (out + err).decode()
 
     def wait_for(self, path):
-        deadline = time.monotonic() + 30
+        deadline = time.monotonic() + 30 * PATIENCE
         while not path.exists():
             self.assertLess(time.monotonic(), deadline)
             time.sleep(0.001)

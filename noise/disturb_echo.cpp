@@ -50,17 +50,16 @@ ReceivedEcho disturb_echo(const NoiseChain& chain, const Echo& echo, const Recei
   if (!layers.multipath.empty()) received.multipath = receiver.spread.apply(layers.multipath);
   if (coherent) received.sidelobe = receiver.coherent.sidelobe_power(total);
   if (leaks && !coherent) received.sidelobe = Image2<float>(total.rows(), total.columns());
-  const Image2<float> through_main_lobe = leaks || !coherent ? receiver.spread.apply(total) : Image2<float>();
-  if (leaks) add_leaked_power(chain, through_main_lobe, received.sidelobe);
+  if (leaks) add_leaked_power(chain, receiver, total, received.sidelobe);
   if (!has_field_stages(chain)) {
-    received.power = through_main_lobe;
+    received.power = receiver.spread.apply(total);
     return received;
   }
 
   ComplexField field(total.rows(), total.columns());
   if (coherent) add_scatterers(layers, cells, setting.surface, field);
   if (add_white_sources(chain, receiver, setting, field) || coherent) field = receiver.coherent.apply(field);
-  if (!coherent) add(field, incoherent_field(chain, through_main_lobe, setting.ping.child("speckle")));
+  if (!coherent) add(field, incoherent_field(chain, receiver.spread.apply(total), setting.ping.child("speckle")));
   disturb_field(chain, receiver, setting, field);
   received.power = power_of(field);
   return received;

@@ -125,14 +125,17 @@ struct FieldDisturbance {
     std::vector<float> re(static_cast<std::size_t>(beams()));
     std::vector<float> im = re;
     for (int bin = 0; bin < bins(); ++bin) {
-      std::copy_n(field.real.row(bin).begin(), beams(), re.begin());
-      std::copy_n(field.imaginary.row(bin).begin(), beams(), im.begin());
+      float* out_re = field.real.row(bin).data();
+      float* out_im = field.imaginary.row(bin).data();
+      std::copy_n(out_re, beams(), re.begin());
+      std::copy_n(out_im, beams(), im.begin());
       for_copies(stage, [&](int copy, double db) {
         const auto leak = static_cast<float>(amplitude_of_db(db));
         for (const int away : {copy * period, -copy * period}) {
-          for (int b = std::max(0, -away); b < std::min(beams(), beams() - away); ++b) {
-            field.real(bin, b) += leak * re[b + away];
-            field.imaginary(bin, b) += leak * im[b + away];
+          const int last = std::min(beams(), beams() - away);
+          for (int b = std::max(0, -away); b < last; ++b) {
+            out_re[b] += leak * re[b + away];
+            out_im[b] += leak * im[b + away];
           }
         }
       });
@@ -207,27 +210,29 @@ void disturb_field(const NoiseChain& chain, const Receiver& receiver, const Ping
   }
 }
 
-void add_leaked_power(const NoiseChain& chain, const Image2<float>& power, Image2<float>& leaked) {
-  const int beams = power.columns();
-  for (int bin = 0; bin < power.rows(); ++bin) {
-    const auto in = power.row(bin);
-    const auto out = leaked.row(bin);
-    for (const auto& stage : chain.stages) {
-      if (const auto* arcs = std::get_if<SidelobeArcs<double>>(&stage)) {
-        float sum = 0.0f;
-        for (const float p : in) sum += p;
-        const float leak = sum * static_cast<float>(power_of_db(arcs->level_db));
-        for (float& p : out) p += leak;
-      }
-      if (const auto* talk = std::get_if<CrossTalk<double>>(&stage)) {
-        const int period = std::max(1, static_cast<int>(std::lround(talk->period_beams)));
-        FieldDisturbance::for_copies(*talk, [&](int copy, double db) {
-          const auto leak = static_cast<float>(power_of_db(db));
-          for (const int away : {copy * period, -copy * period}) {
-            for (int b = std::max(0, -away); b < std::min(beams, beams - away); ++b) out[b] += leak * in[b + away];
-          }
-        });
-      }
+void add_leaked_power(const NoiseChain& chain, const Receiver& receiver, const Image2<float>& power,
+                      Image2<float>& leaked) {
+  if (const auto* arcs = chain.find<SidelobeArcs>()) {
+    const auto leak = static_cast<float>(power_of_db(arcs->level_db) * receiver.coherent.noise_gain());
+    for (int bin = 0; bin < power.rows(); ++bin) {
+      float sum = 0.0f;
+      for (const float p : power.row(bin)) sum += p;
+      for (float& p : leaked.row(bin)) p += leak * sum;
+    }
+  }
+  if (const auto* talk = chain.find<CrossTalk>()) {
+    const int period = std::max(1, static_cast<int>(std::lround(talk->period_beams)));
+    const int beams = power.columns();
+    const Image2<float> channels = receiver.spread.apply(power);
+    for (int bin = 0; bin < power.rows(); ++bin) {
+      const float* in = channels.row(bin).data();
+      float* out = leaked.row(bin).data();
+      FieldDisturbance::for_copies(*talk, [&](int copy, double db) {
+        const auto leak = static_cast<float>(power_of_db(db));
+        for (const int away : {copy * period, -copy * period}) {
+          for (int b = std::max(0, -away); b < std::min(beams, beams - away); ++b) out[b] += leak * in[b + away];
+        }
+      });
     }
   }
 }

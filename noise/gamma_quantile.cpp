@@ -9,62 +9,82 @@
 namespace ensonify {
 namespace {
 
-/// ln of the lower and upper tail of the gamma distribution: whichever is the smaller is exact to rounding (series and
-/// continued fraction; Press et al. 2007, 6.2).
-struct Tails {
-  double log_lower, log_upper;
-};
+/// The gamma distribution of one shape.
+class Gamma {
+ public:
+  explicit Gamma(double shape) : shape_(shape), log_gamma_(std::lgamma(shape)) {}
 
-Tails gamma_tails(double a, double x) {
-  const double front = a * std::log(x) - x - std::lgamma(a);
-  if (x < a + 1.0) {
-    double term = 1.0 / a;
+  /// ln x with P(shape, x) = Phi(z), from a guess near it: Newton's steps on the logarithm of the smaller tail, which is
+  /// concave in ln x.
+  double log_quantile(double z, double guess) const {
+    const bool low = z < 0.0;
+    const double wanted = std::log(0.5 * std::erfc(std::abs(z) / std::numbers::sqrt2));
+    double y = guess;
+    for (int i = 0; i < 50; ++i) {
+      const double log_density = shape_ * y - std::exp(y) - log_gamma_;  // of ln x
+      const double log_tail = low ? log_lower(y, log_density) : log_upper(y, log_density);
+      const double slope = std::exp(log_density - log_tail) * (low ? 1.0 : -1.0);
+      const double step = std::clamp((wanted - log_tail) / slope, -2.0, 2.0);
+      y += step;
+      if (std::abs(step) < 1e-9) break;
+    }
+    return y;
+  }
+
+ private:
+  // Series and continued fraction (Press et al. 2007, 6.2): each tail by the one that converges.
+  double log_lower(double y, double log_density) const {
+    const double x = std::exp(y);
+    return x < shape_ + 1.0 ? log_density + std::log(series(x)) : other(log_density + std::log(fraction(x)));
+  }
+  double log_upper(double y, double log_density) const {
+    const double x = std::exp(y);
+    return x < shape_ + 1.0 ? other(log_density + std::log(series(x))) : log_density + std::log(fraction(x));
+  }
+  static double other(double log_tail) { return std::log1p(-std::min(std::exp(log_tail), 1.0 - 1e-16)); }
+
+  double series(double x) const {
+    double term = 1.0 / shape_;
     double sum = term;
-    for (int n = 1; n < 2000 && term > 1e-16 * sum; ++n) {
-      term *= x / (a + n);
+    for (int n = 1; n < 2000 && term > 1e-12 * sum; ++n) {
+      term *= x / (shape_ + n);
       sum += term;
     }
-    const double log_lower = front + std::log(sum);
-    return {log_lower, std::log1p(-std::min(std::exp(log_lower), 1.0 - 1e-16))};
+    return sum;
   }
-  double b = x + 1.0 - a;
-  double c = 1e300;
-  double d = 1.0 / b;
-  double h = d;
-  for (int n = 1; n < 2000; ++n) {
-    const double an = -n * (n - a);
-    b += 2.0;
-    d = 1.0 / (an * d + b);
-    c = b + an / c;
-    const double step = d * c;
-    h *= step;
-    if (std::abs(step - 1.0) < 1e-15) break;
-  }
-  const double log_upper = front + std::log(h);
-  return {std::log1p(-std::min(std::exp(log_upper), 1.0 - 1e-16)), log_upper};
-}
 
-/// x with P(shape, x) = Phi(z), by bisection in ln x on the smaller tail.
-double gamma_at_normal(double shape, double z) {
-  const bool low = z < 0.0;
-  const double wanted = std::log(0.5 * std::erfc(std::abs(z) / std::numbers::sqrt2));
-  double below = (z < 0.0 ? -200.0 : -10.0);
-  double above = std::log(shape + 60.0 + 12.0 * std::sqrt(shape));
-  for (int i = 0; i < 60; ++i) {
-    const double middle = 0.5 * (below + above);
-    const Tails tails = gamma_tails(shape, std::exp(middle));
-    const bool too_low = low ? tails.log_lower < wanted : tails.log_upper > wanted;
-    (too_low ? below : above) = middle;
+  double fraction(double x) const {
+    double b = x + 1.0 - shape_;
+    double c = 1e300;
+    double d = 1.0 / b;
+    double h = d;
+    for (int n = 1; n < 2000; ++n) {
+      const double an = -n * (n - shape_);
+      b += 2.0;
+      d = 1.0 / (an * d + b);
+      c = b + an / c;
+      const double step = d * c;
+      h *= step;
+      if (std::abs(step - 1.0) < 1e-12) break;
+    }
+    return h;
   }
-  return std::exp(0.5 * (below + above));
-}
+
+  double shape_, log_gamma_;
+};
 
 }  // namespace
 
 GammaQuantile::GammaQuantile(double shape) {
-  for (int i = 0; i <= steps; ++i) {
-    const double z = reach * (2.0 * i / steps - 1.0);
-    cube_root_[i] = static_cast<float>(std::cbrt(gamma_at_normal(shape, z) / shape));
+  const Gamma gamma(shape);
+  // From the middle outwards, so that every point begins near its neighbour's solution.
+  const double middle = gamma.log_quantile(0.0, std::log(shape > 1.0 ? shape : 0.5 * shape));
+  for (const int way : {-1, 1}) {
+    double y = middle;
+    for (int i = steps / 2; i >= 0 && i <= steps; i += way) {
+      y = gamma.log_quantile(reach * (2.0 * i / steps - 1.0), y);
+      cube_root_[i] = static_cast<float>(std::cbrt(std::exp(y) / shape));
+    }
   }
   cube_root_[steps + 1] = cube_root_[steps];
 }

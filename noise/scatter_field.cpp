@@ -1,6 +1,7 @@
 #include "ensonify/noise/scatter_field.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 
@@ -37,19 +38,28 @@ void add_gaussian(std::span<const float> power, std::span<float> uniform0, std::
 }
 
 void add_scatterers(const Echo& layers, SurfaceCells& cells, RandomKey surface, ComplexField& field) {
-  std::vector<float> uniform0(static_cast<std::size_t>(layers.direct.columns()));
-  std::vector<float> uniform1 = uniform0;
+  constexpr std::size_t chunk = 32;  // of beams: most of an image is dark
+  std::array<float, chunk> uniform0, uniform1;
+  const auto beams = static_cast<std::size_t>(layers.direct.columns());
+  const auto add_layer = [&](const Image2<float>& layer, RandomKey key, int bin) {
+    for (std::size_t first = 0; first < beams; first += chunk) {
+      const std::size_t count = std::min(chunk, beams - first);
+      const auto power = layer.row(bin).subspan(first, count);
+      if (is_dark(power)) continue;
+      const auto elevation = layers.elevation_rad.empty() ? std::span<const float>{}
+                                                          : layers.elevation_rad.row(bin).subspan(first, count);
+      const auto numbers0 = std::span(uniform0).first(count);
+      const auto numbers1 = std::span(uniform1).first(count);
+      cells.resolution_cells(key, bin, first, elevation, numbers0, numbers1);
+      add_gaussian(power, numbers0, numbers1, field.real.row(bin).subspan(first, count),
+                   field.imaginary.row(bin).subspan(first, count));
+    }
+  };
   const RandomKey direct = surface.child("direct");
   const RandomKey multipath = surface.child("multipath");
   for (int bin = 0; bin < layers.direct.rows(); ++bin) {
-    const auto elevation = layers.elevation_rad.empty() ? std::span<const float>{} : layers.elevation_rad.row(bin);
-    const auto add_layer = [&](const Image2<float>& layer, RandomKey key) {
-      if (layer.empty() || is_dark(layer.row(bin))) return;
-      cells.resolution_cells(key, bin, elevation, uniform0, uniform1);
-      add_gaussian(layer.row(bin), uniform0, uniform1, field.real.row(bin), field.imaginary.row(bin));
-    };
-    add_layer(layers.direct, direct);
-    add_layer(layers.multipath, multipath);
+    add_layer(layers.direct, direct, bin);
+    if (!layers.multipath.empty()) add_layer(layers.multipath, multipath, bin);
   }
 }
 

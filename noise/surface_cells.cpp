@@ -38,12 +38,13 @@ SurfaceCells::SurfaceCells(const SonarModel& sonar, const Pose& T_world_sonar)
   for (auto* v : {&c0_, &c1_, &c2_, &c3_, &word0_, &word1_}) v->resize(beams);
 }
 
-void SurfaceCells::name_cubes(float range_m, std::span<const float> elevation_rad, float cube_m, float slice_m) {
+void SurfaceCells::name_cubes(std::size_t first, std::size_t count, float range_m,
+                              std::span<const float> elevation_rad, float cube_m, float slice_m) {
   const float per_cube = 1.0f / cube_m;
   const float per_slice = 1.0f / slice_m;
-  const float* __restrict ax = ahead_x_.data();
-  const float* __restrict ay = ahead_y_.data();
-  const float* __restrict az = ahead_z_.data();
+  const float* __restrict ax = ahead_x_.data() + first;
+  const float* __restrict ay = ahead_y_.data() + first;
+  const float* __restrict az = ahead_z_.data() + first;
   std::uint32_t* __restrict c0 = c0_.data();
   std::uint32_t* __restrict c1 = c1_.data();
   std::uint32_t* __restrict c2 = c2_.data();
@@ -68,33 +69,35 @@ void SurfaceCells::name_cubes(float range_m, std::span<const float> elevation_ra
     c3[b] = whole(along * cube_m * per_slice);
   };
   if (elevation_rad.empty()) {
-    for (std::size_t b = 0; b < c0_.size(); ++b) name(b, 0.0f);
+    for (std::size_t b = 0; b < count; ++b) name(b, 0.0f);
   } else {
     const float* __restrict phi = elevation_rad.data();
-    for (std::size_t b = 0; b < c0_.size(); ++b) name(b, phi[b]);
+    for (std::size_t b = 0; b < count; ++b) name(b, phi[b]);
   }
 }
 
 void SurfaceCells::look_up(RandomKey key, std::span<float> uniform0, std::span<float> uniform1) {
-  words_at(key, {c0_, c1_, c2_, c3_}, word0_, word1_);
+  const auto used = [&](std::vector<std::uint32_t>& words) { return std::span(words).first(uniform0.size()); };
+  words_at(key, {used(c0_), used(c1_), used(c2_), used(c3_)}, used(word0_), used(word1_));
   for (std::size_t b = 0; b < uniform0.size(); ++b) uniform0[b] = uniform_of(word0_[b]);
   for (std::size_t b = 0; b < uniform1.size(); ++b) uniform1[b] = uniform_of(word1_[b]);
 }
 
-void SurfaceCells::resolution_cells(RandomKey key, int bin, std::span<const float> elevation_rad,
+void SurfaceCells::resolution_cells(RandomKey key, int bin, std::size_t first, std::span<const float> elevation_rad,
                                     std::span<float> uniform0, std::span<float> uniform1) {
   const auto range_m = static_cast<float>(geometry_.bin_centre_m(bin));
   const auto slice_m = static_cast<float>(geometry_.bin_size_m());
   const float apart_m = std::max({beam_spacing_ * range_m, 0.25f * slice_m, least_cube_m});
   const int size = static_cast<int>(std::lround(sizes_an_octave * std::log2(0.88f * apart_m)));
-  name_cubes(range_m, elevation_rad, std::exp2(static_cast<float>(size) / sizes_an_octave), slice_m);
+  name_cubes(first, uniform0.size(), range_m, elevation_rad,
+             std::exp2(static_cast<float>(size) / sizes_an_octave), slice_m);
   look_up(key.child(static_cast<std::uint64_t>(size + 1024)), uniform0, uniform1);
 }
 
 void SurfaceCells::patches(RandomKey key, int bin, std::span<const float> elevation_rad, float patch_m,
                            std::span<float> uniform) {
   const float cube_m = std::max(patch_m, least_cube_m);
-  name_cubes(static_cast<float>(geometry_.bin_centre_m(bin)), elevation_rad, cube_m,
+  name_cubes(0, uniform.size(), static_cast<float>(geometry_.bin_centre_m(bin)), elevation_rad, cube_m,
              std::numeric_limits<float>::infinity());  // whole cubes
   look_up(key, uniform, {});
 }

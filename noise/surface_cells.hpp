@@ -20,16 +20,18 @@ class SurfaceCells {
   /// Uniform numbers of the resolution cells of a row, two each. A piece is a slice, one range bin thick along the line
   /// of sight, of a cube as wide as the beams are apart at that range (in steps of an eighth of an octave, so that the
   /// same cubes serve some ranges). A move sideways of that width, or of a bin in range, gives a new piece.
-  /// `elevation_rad`: of each beam, or empty for the horizontal plane of the sonar.
-  void resolution_cells(RandomKey key, int bin, std::span<const float> elevation_rad, std::span<float> uniform0,
-                        std::span<float> uniform1);
+  /// For the beams from `first` on, as many as uniform0 is long. `elevation_rad`: of each of them, or empty for the
+  /// horizontal plane of the sonar.
+  void resolution_cells(RandomKey key, int bin, std::size_t first, std::span<const float> elevation_rad,
+                        std::span<float> uniform0, std::span<float> uniform1);
 
-  /// Uniform numbers of the cubes of `patch_m` that the beams of a row see.
+  /// Uniform numbers of the cubes of `patch_m` that all the beams of a row see.
   void patches(RandomKey key, int bin, std::span<const float> elevation_rad, float patch_m, std::span<float> uniform);
 
  private:
   void look_up(RandomKey key, std::span<float> uniform0, std::span<float> uniform1);
-  void name_cubes(float range_m, std::span<const float> elevation_rad, float cube_m, float slice_m);
+  void name_cubes(std::size_t first, std::size_t count, float range_m, std::span<const float> elevation_rad,
+                  float cube_m, float slice_m);
 
   SonarGeometry geometry_;
   Eigen::Vector3f origin_, up_;

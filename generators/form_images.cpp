@@ -34,24 +34,30 @@ Image2<std::uint8_t> labels_of(const SonarModel& sonar, int threshold, const Ima
   Image2<std::uint8_t> labels(mask.rows(), mask.columns());
   const float least_over_full_scale = power_at_threshold(sonar, threshold);
   const std::vector<float> gains = row_gains(sonar);
+  const auto beams = static_cast<std::size_t>(mask.columns());
+  std::vector<float> strongest(beams);
+  std::vector<int> label(beams);
   for (int bin = 0; bin < mask.rows(); ++bin) {
-    const float least = least_over_full_scale / gains[bin];
-    for (int b = 0; b < mask.columns(); ++b) {
-      PixelLabel label = bin >= shadow_start_bin[b] ? PixelLabel::shadow : PixelLabel::water;
-      float strongest = 0.0f;
-      if (mask(bin, b) != 0) {
-        label = PixelLabel::direct;
-        strongest = power.direct(bin, b);
-      }
-      const auto compete = [&](const Image2<float>& layer, PixelLabel name) {
-        if (layer.empty() || layer(bin, b) < least || layer(bin, b) <= strongest) return;
-        label = name;
-        strongest = layer(bin, b);
-      };
-      compete(power.multipath, PixelLabel::multipath);
-      compete(power.sidelobe, PixelLabel::sidelobe);
-      labels(bin, b) = static_cast<std::uint8_t>(label);
+    const auto set = mask.row(bin);
+    const auto direct = power.direct.row(bin);
+    for (std::size_t b = 0; b < beams; ++b) {
+      const PixelLabel behind = bin >= shadow_start_bin[b] ? PixelLabel::shadow : PixelLabel::water;
+      label[b] = static_cast<int>(set[b] != 0 ? PixelLabel::direct : behind);
+      strongest[b] = set[b] != 0 ? direct[b] : 0.0f;
     }
+    const float least = least_over_full_scale / gains[bin];
+    const auto compete = [&](const Image2<float>& layer, PixelLabel name) {
+      if (layer.empty()) return;
+      const auto in = layer.row(bin);
+      for (std::size_t b = 0; b < beams; ++b) {
+        const bool wins = in[b] >= least && in[b] > strongest[b];
+        label[b] = wins ? static_cast<int>(name) : label[b];
+        strongest[b] = wins ? in[b] : strongest[b];
+      }
+    };
+    compete(power.multipath, PixelLabel::multipath);
+    compete(power.sidelobe, PixelLabel::sidelobe);
+    for (std::size_t b = 0; b < beams; ++b) labels(bin, static_cast<int>(b)) = static_cast<std::uint8_t>(label[b]);
   }
   return labels;
 }

@@ -125,8 +125,8 @@ struct FieldDisturbance {
     std::vector<float> re(static_cast<std::size_t>(beams()));
     std::vector<float> im = re;
     for (int bin = 0; bin < bins(); ++bin) {
-      float* out_re = field.real.row(bin).data();
-      float* out_im = field.imaginary.row(bin).data();
+      float* __restrict out_re = field.real.row(bin).data();
+      float* __restrict out_im = field.imaginary.row(bin).data();
       std::copy_n(out_re, beams(), re.begin());
       std::copy_n(out_im, beams(), im.begin());
       for_copies(stage, [&](int copy, double db) {
@@ -225,8 +225,8 @@ void add_leaked_power(const NoiseChain& chain, const Receiver& receiver, const I
     const int beams = power.columns();
     const Image2<float> channels = receiver.spread.apply(power);
     for (int bin = 0; bin < power.rows(); ++bin) {
-      const float* in = channels.row(bin).data();
-      float* out = leaked.row(bin).data();
+      const float* __restrict in = channels.row(bin).data();
+      float* __restrict out = leaked.row(bin).data();
       FieldDisturbance::for_copies(*talk, [&](int copy, double db) {
         const auto leak = static_cast<float>(power_of_db(db));
         for (const int away : {copy * period, -copy * period}) {

@@ -5,6 +5,9 @@
 #include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
+
+#include "ensonify/noise/philox_lanes.hpp"
 
 namespace ensonify {
 namespace {
@@ -60,44 +63,26 @@ inline float normal_inline(float u) {
 
 inline float rayleigh_inline(float u) { return std::sqrt(std::max(-2.0f * log_of(u), 0.0f)); }
 
-constexpr int lanes = 16;
-using Lanes = std::array<std::uint32_t, lanes>;
-
-/// Philox4x32-10 (Salmon et al. 2011) of `lanes` counters, in place.
-inline void philox_lanes(RandomKey key, Lanes& c0, Lanes& c1, Lanes& c2, Lanes& c3) {
-  std::uint32_t k0 = key.word0;
-  std::uint32_t k1 = key.word1;
-  for (int round = 0; round < 10; ++round) {
-    for (int l = 0; l < lanes; ++l) {
-      const std::uint64_t p0 = std::uint64_t{0xD2511F53u} * c0[l];
-      const std::uint64_t p1 = std::uint64_t{0xCD9E8D57u} * c2[l];
-      const auto n0 = static_cast<std::uint32_t>(p1 >> 32) ^ c1[l] ^ k0;
-      const auto n2 = static_cast<std::uint32_t>(p0 >> 32) ^ c3[l] ^ k1;
-      c1[l] = static_cast<std::uint32_t>(p1);
-      c3[l] = static_cast<std::uint32_t>(p0);
-      c0[l] = n0;
-      c2[l] = n2;
-    }
-    k0 += 0x9E3779B9u;
-    k1 += 0xBB67AE85u;
-  }
-}
+constexpr int lanes = PhiloxLanes::lanes;
 
 /// The words of `lanes` consecutive values of the first counter, four of each in turn.
 inline void philox_row(RandomKey key, std::uint32_t first, std::uint32_t row, std::uint32_t* out) {
-  Lanes c0, c1, c2, c3;
+  PhiloxLanes philox{};
   for (int l = 0; l < lanes; ++l) {
-    c0[l] = first + static_cast<std::uint32_t>(l);
-    c1[l] = row;
-    c2[l] = 0;
-    c3[l] = 0;
+    philox.c0[l / 4][l % 4] = first + static_cast<std::uint32_t>(l);
+    philox.c1[l / 4][l % 4] = row;
+    philox.c2[l / 4][l % 4] = 0;
+    philox.c3[l / 4][l % 4] = 0;
   }
-  philox_lanes(key, c0, c1, c2, c3);
-  for (int l = 0; l < lanes; ++l) {
-    out[4 * l] = c0[l];
-    out[4 * l + 1] = c1[l];
-    out[4 * l + 2] = c2[l];
-    out[4 * l + 3] = c3[l];
+  philox.run(key);
+  static_assert(std::endian::native == std::endian::little);
+  for (int half = 0; half < 2; ++half) {
+    const PhiloxLanes::Four low = philox.c0[half] | (philox.c1[half] << 32);
+    const PhiloxLanes::Four high = philox.c2[half] | (philox.c3[half] << 32);
+    for (int l = 0; l < 4; ++l) {
+      const std::uint64_t words[2]{low[l], high[l]};
+      std::memcpy(out + 4 * (4 * half + l), words, sizeof(words));
+    }
   }
 }
 
@@ -119,17 +104,23 @@ void fill_words(RandomKey key, std::uint32_t row, std::span<std::uint32_t> words
 
 void words_at(RandomKey key, const Counters& counters, std::span<std::uint32_t> word0,
               std::span<std::uint32_t> word1) {
-  for (std::size_t first = 0; first < word0.size(); first += lanes) {
-    const std::size_t count = std::min<std::size_t>(lanes, word0.size() - first);
-    Lanes c0{}, c1{}, c2{}, c3{};
-    std::copy_n(counters.c0.data() + first, count, c0.begin());
-    std::copy_n(counters.c1.data() + first, count, c1.begin());
-    std::copy_n(counters.c2.data() + first, count, c2.begin());
-    std::copy_n(counters.c3.data() + first, count, c3.begin());
-    philox_lanes(key, c0, c1, c2, c3);
-    std::copy_n(c0.begin(), count, word0.data() + first);
-    std::copy_n(c1.begin(), count, word1.data() + first);
-  }
+  std::size_t first = 0;
+  const auto look_up = [&](std::size_t count) {
+    PhiloxLanes philox{};
+    for (std::size_t l = 0; l < count; ++l) {
+      philox.c0[l / 4][l % 4] = counters.c0[first + l];
+      philox.c1[l / 4][l % 4] = counters.c1[first + l];
+      philox.c2[l / 4][l % 4] = counters.c2[first + l];
+      philox.c3[l / 4][l % 4] = counters.c3[first + l];
+    }
+    philox.run(key);
+    for (std::size_t l = 0; l < count; ++l) {
+      word0[first + l] = static_cast<std::uint32_t>(philox.c0[l / 4][l % 4]);
+      word1[first + l] = static_cast<std::uint32_t>(philox.c1[l / 4][l % 4]);
+    }
+  };
+  for (; first + lanes <= word0.size(); first += lanes) look_up(lanes);  // a number of lanes that the compiler knows
+  if (first < word0.size()) look_up(word0.size() - first);
 }
 
 void uniform_row(RandomKey key, std::uint32_t row, std::span<float> uniforms) {

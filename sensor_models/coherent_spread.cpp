@@ -57,45 +57,45 @@ std::vector<float> pulse_amplitudes(const SonarModel& sonar) {
   return pulse;
 }
 
-/// Adds a band matrix times the row that stands in `padded` (reach zeros on either side). Sums of a few beams at a time
-/// stay in registers.
-void multiply_band(const Image2<float>& band, const float* padded, float* __restrict out) {
-  constexpr int chunk = 32;
-  const int beams = band.columns();
-  const int diagonals = band.rows();
-  int b = 0;
-  for (; b + chunk <= beams; b += chunk) {
-    std::array<float, chunk> sum{};
-    for (int d = 0; d < diagonals; ++d) {
-      const float* __restrict weight = &band(d, b);
-      const float* __restrict in = padded + b + d;
-      for (int i = 0; i < chunk; ++i) sum[i] += weight[i] * in[i];
+/// Rows smeared along range, with `reach` zeros on either side.
+Image2<float> spread_range(const Image2<float>& in, const std::vector<float>& taps, int reach) {
+  const int range_reach = static_cast<int>(taps.size()) / 2;
+  Image2<float> result(in.rows(), in.columns() + 2 * reach);
+  for (int bin = 0; bin < in.rows(); ++bin) {
+    float* __restrict line = result.row(bin).data() + reach;
+    for (int k = std::max(-range_reach, -bin); k <= std::min(range_reach, in.rows() - 1 - bin); ++k) {
+      const float* __restrict row = in.row(bin + k).data();
+      const float weight = taps[static_cast<std::size_t>(k + range_reach)];
+      for (int b = 0; b < in.columns(); ++b) line[b] += weight * row[b];
     }
-    for (int i = 0; i < chunk; ++i) out[b + i] = sum[i];
   }
-  for (; b < beams; ++b) {
-    float sum = 0.0f;
-    for (int d = 0; d < diagonals; ++d) sum += band(d, b) * padded[b + d];
-    out[b] = sum;
-  }
+  return result;
 }
 
-/// Range taps, then the band, a row at a time.
+/// Range taps, then the band matrix: a few beams of all rows at a time, so that their weights stay at hand and their sums
+/// in registers.
 Image2<float> spread(const Image2<float>& in, const std::vector<float>& taps, const Image2<float>& band) {
-  const int range_reach = static_cast<int>(taps.size()) / 2;
-  const int reach = band.rows() / 2;
+  constexpr int chunk = 32;
   const int beams = in.columns();
+  const int diagonals = band.rows();
+  const Image2<float> padded = spread_range(in, taps, diagonals / 2);
   Image2<float> result(in.rows(), beams);
-  std::vector<float> padded(static_cast<std::size_t>(beams + 2 * reach));
-  float* line = padded.data() + reach;
-  for (int bin = 0; bin < in.rows(); ++bin) {
-    std::fill_n(line, beams, 0.0f);
-    for (int k = std::max(-range_reach, -bin); k <= std::min(range_reach, in.rows() - 1 - bin); ++k) {
-      const auto row = in.row(bin + k);
-      const float weight = taps[static_cast<std::size_t>(k + range_reach)];
-      for (int b = 0; b < beams; ++b) line[b] += weight * row[b];
+  int b = 0;
+  for (; b + chunk <= beams; b += chunk) {
+    for (int bin = 0; bin < in.rows(); ++bin) {
+      const float* __restrict line = padded.row(bin).data() + b;
+      std::array<float, chunk> sum{};
+      for (int d = 0; d < diagonals; ++d) {
+        const float* __restrict weight = band.row(d).data() + b;
+        for (int i = 0; i < chunk; ++i) sum[i] += weight[i] * line[d + i];
+      }
+      std::copy(sum.begin(), sum.end(), result.row(bin).data() + b);
     }
-    multiply_band(band, padded.data(), result.row(bin).data());
+  }
+  for (int bin = 0; bin < in.rows(); ++bin) {
+    for (int rest = b; rest < beams; ++rest) {
+      for (int d = 0; d < diagonals; ++d) result(bin, rest) += band(d, rest) * padded(bin, rest + d);
+    }
   }
   return result;
 }

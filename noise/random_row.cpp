@@ -67,12 +67,11 @@ constexpr int lanes = PhiloxLanes::lanes;
 
 /// The words of `lanes` consecutive values of the first counter, four of each in turn.
 inline void philox_row(RandomKey key, std::uint32_t first, std::uint32_t row, std::uint32_t* out) {
-  PhiloxLanes philox{};
-  for (int l = 0; l < lanes; ++l) {
-    philox.c0[l / 4][l % 4] = first + static_cast<std::uint32_t>(l);
-    philox.c1[l / 4][l % 4] = row;
-    philox.c2[l / 4][l % 4] = 0;
-    philox.c3[l / 4][l % 4] = 0;
+  PhiloxLanes philox;
+  for (std::uint32_t half = 0; half < 2; ++half) {
+    const auto counter = [&](std::uint32_t l) { return std::uint64_t{first + 4 * half + l}; };
+    philox.c0[half] = PhiloxLanes::Four{counter(0), counter(1), counter(2), counter(3)};
+    philox.c1[half] = PhiloxLanes::Four{row, row, row, row};
   }
   philox.run(key);
   static_assert(std::endian::native == std::endian::little);

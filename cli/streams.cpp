@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ostream.h>
+#include <poll.h>
 #include <unistd.h>
 
 #include <cerrno>
@@ -11,6 +12,15 @@
 #include <iostream>
 
 namespace ensonify::cli {
+namespace {
+
+/// Nobody reads standard output any more: it is a pipe, closed at its other end.
+bool reader_is_gone() {
+  pollfd out{STDOUT_FILENO, POLLOUT, 0};
+  return ::poll(&out, 1, 0) > 0 && (out.revents & POLLERR) != 0;
+}
+
+}  // namespace
 
 void hold_standard_streams() {
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
@@ -22,7 +32,8 @@ void hold_standard_streams() {
 int finish_standard_output(int code) {
   errno = 0;
   const bool taken = std::fflush(stdout) == 0 && std::ferror(stdout) == 0;
-  if (taken || errno == EPIPE) return code;
+  // An error from before this flush has left no errno.
+  if (taken || errno == EPIPE || (errno == 0 && reader_is_gone())) return code;
   complain(fmt::format("standard output: can not be written{}{}", errno != 0 ? ": " : "",
                        errno != 0 ? std::strerror(errno) : ""));
   return code == 0 ? 1 : code;

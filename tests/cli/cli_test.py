@@ -203,7 +203,7 @@ class Configuration(ProgramTest):
             ("max_m: 20", 'max_m: "5 m"', ["max_m", "must be a plain number", "5 m"]),
             ("max_m: 20", "max_m: 1e9", ["max_m", "must lie in"]),
             ("max_m: 20", "max_m: .nan", ["max_m", "not .nan"]),
-            ("min_m: 0.2", "min_m: -1", ["min_m", "must be above 0"]),
+            ("min_m: 0.2", "min_m: -1", ["min_m", "must lie in [0"]),
             ("frequency_hz: 1.2e6", "frequency_khz: 1200", ["frequency_hz"]),
             ("frequency_hz: 1.2e6", "frequency_hz: 1.2", ["frequency_hz", "must lie in [10000"]),
             ("count: 48", "count: 0", ["beams.count", "must be a whole number in [1,"]),

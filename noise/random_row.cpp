@@ -87,20 +87,6 @@ inline void philox_row(RandomKey key, std::uint32_t first, std::uint32_t row, st
 
 }  // namespace
 
-void fill_words(RandomKey key, std::uint32_t row, std::span<std::uint32_t> words) {
-  constexpr std::size_t chunk = 4 * lanes;
-  std::uint32_t block = 0;
-  std::size_t done = 0;
-  for (; done + chunk <= words.size(); done += chunk, block += lanes) {
-    philox_row(key, block, row, words.data() + done);
-  }
-  if (done < words.size()) {
-    std::array<std::uint32_t, chunk> rest;
-    philox_row(key, block, row, rest.data());
-    std::copy_n(rest.begin(), words.size() - done, words.begin() + static_cast<std::ptrdiff_t>(done));
-  }
-}
-
 void words_at(RandomKey key, const Counters& counters, std::span<std::uint32_t> word0,
               std::span<std::uint32_t> word1) {
   std::size_t first = 0;

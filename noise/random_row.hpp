@@ -7,12 +7,7 @@
 
 namespace ensonify {
 
-/// Fills a row with numbers addressed by (key, row, position): position p holds word p % 4 of random_words(key, p / 4,
-/// row). The same bits as one call a pixel, made eight blocks at a time.
-void fill_words(RandomKey key, std::uint32_t row, std::span<std::uint32_t> words);
-
-/// The same for any counters of 128 bits: four words of each, word w of counter i in words[w][i]. All spans are equally
-/// long.
+/// Words 0 and 1 of random_words at any counters. All spans are equally long.
 struct Counters {
   std::span<const std::uint32_t> c0, c1, c2, c3;
 };
@@ -26,10 +21,10 @@ float normal_of(float uniform);
 /// Rayleigh of scale 1 by inversion.
 float rayleigh_of(float uniform);
 
-/// Uniforms of one row: fill_words as numbers.
+/// Uniforms addressed by (key, row, position): position p is uniform_of(word p % 4 of random_words(key, p / 4, row)).
 void uniform_row(RandomKey key, std::uint32_t row, std::span<float> uniforms);
 
-/// The same for whole rows, in place.
+/// Both for whole rows, in place.
 void to_normal(std::span<float> uniforms);
 void to_rayleigh(std::span<float> uniforms);
 

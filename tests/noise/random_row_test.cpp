@@ -13,12 +13,36 @@ TEST(RandomRow, SameBitsAsOneCallAPixel) {
   const RandomKey key = RandomKey::from_seed(77).child("noise");
   for (const std::size_t length : {0u, 1u, 3u, 4u, 5u, 63u, 64u, 65u, 127u, 511u, 512u, 1001u}) {
     for (const std::uint32_t row : {0u, 1u, 511u, 0xffffffffu}) {
-      std::vector<std::uint32_t> words(length);
-      fill_words(key, row, words);
+      std::vector<float> numbers(length);
+      uniform_row(key, row, numbers);
       for (std::size_t p = 0; p < length; ++p) {
-        ASSERT_EQ(words[p], random_words(key, static_cast<std::uint32_t>(p / 4), row)[p % 4]) << length << " " << p;
+        const std::uint32_t word = random_words(key, static_cast<std::uint32_t>(p / 4), row)[p % 4];
+        ASSERT_EQ(numbers[p], uniform_of(word)) << length << " " << p;
       }
     }
+  }
+}
+
+// random_words knows three words of a counter; the fourth is told by a counter of its own: it must matter.
+TEST(RandomRow, SameBitsAtAnyCounters) {
+  const RandomKey key = RandomKey::from_seed(78);
+  for (const std::size_t length : {1u, 7u, 8u, 9u, 100u}) {
+    std::vector<std::uint32_t> c0(length), c1(length), c2(length), c3(length, 0u), word0(length), word1(length);
+    for (std::uint32_t i = 0; i < length; ++i) {
+      c0[i] = 0x9E3779B9u * i;
+      c1[i] = 0xffffffffu - i;
+      c2[i] = i * i;
+    }
+    words_at(key, {c0, c1, c2, c3}, word0, word1);
+    for (std::size_t i = 0; i < length; ++i) {
+      const auto expected = random_words(key, c0[i], c1[i], c2[i]);
+      ASSERT_EQ(word0[i], expected[0]) << length << " " << i;
+      ASSERT_EQ(word1[i], expected[1]) << length << " " << i;
+    }
+    const std::vector<std::uint32_t> before = word0;
+    c3.back() = 1;
+    words_at(key, {c0, c1, c2, c3}, word0, word1);
+    EXPECT_NE(word0.back(), before.back());
   }
 }
 

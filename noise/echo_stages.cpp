@@ -1,8 +1,10 @@
 #include "ensonify/noise/echo_stages.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 
 #include "ensonify/noise/gamma_quantile.hpp"
 #include "ensonify/noise/random_row.hpp"
@@ -45,12 +47,20 @@ struct LayerDisturbance {
 
   void operator()(const Texture<double>& stage) const {
     const GammaQuantile gamma(stage.nu);
-    std::vector<float> texture(static_cast<std::size_t>(echo.direct.columns()));
+    const RandomKey key = setting.surface.child(name);
+    constexpr std::size_t chunk = 32;  // of beams: most of an image is dark
+    std::array<float, chunk> numbers;
+    const auto beams = static_cast<std::size_t>(echo.direct.columns());
     for (int bin = 0; bin < echo.direct.rows(); ++bin) {
-      cells.patches(setting.surface.child(name), bin, elevations(bin), static_cast<float>(stage.patch_m), texture);
-      gamma.apply(texture);
-      const auto row = echo.direct.row(bin);
-      for (std::size_t b = 0; b < row.size(); ++b) row[b] *= texture[b];
+      for (std::size_t first = 0; first < beams; first += chunk) {
+        const std::size_t count = std::min(chunk, beams - first);
+        const auto power = echo.direct.row(bin).subspan(first, count);
+        if (std::all_of(power.begin(), power.end(), [](float p) { return p == 0.0f; })) continue;
+        const auto texture = std::span(numbers).first(count);
+        cells.patches(key, bin, first, elevations(bin, first, count), static_cast<float>(stage.patch_m), texture);
+        gamma.apply(texture);
+        for (std::size_t b = 0; b < count; ++b) power[b] *= texture[b];
+      }
     }
   }
 
@@ -67,9 +77,9 @@ struct LayerDisturbance {
   void operator()(const Stage&) const {}
 
  private:
-  std::span<const float> elevations(int bin) const {
+  std::span<const float> elevations(int bin, std::size_t first, std::size_t count) const {
     if (echo.elevation_rad.empty()) return {};
-    return echo.elevation_rad.row(bin);
+    return std::as_const(echo.elevation_rad).row(bin).subspan(first, count);
   }
 };
 

@@ -94,10 +94,10 @@ void SurfaceCells::resolution_cells(RandomKey key, int bin, std::size_t first, s
   look_up(key.child(static_cast<std::uint64_t>(size + 1024)), uniform0, uniform1);
 }
 
-void SurfaceCells::patches(RandomKey key, int bin, std::span<const float> elevation_rad, float patch_m,
-                           std::span<float> uniform) {
+void SurfaceCells::patches(RandomKey key, int bin, std::size_t first, std::span<const float> elevation_rad,
+                           float patch_m, std::span<float> uniform) {
   const float cube_m = std::max(patch_m, least_cube_m);
-  name_cubes(0, uniform.size(), static_cast<float>(geometry_.bin_centre_m(bin)), elevation_rad, cube_m,
+  name_cubes(first, uniform.size(), static_cast<float>(geometry_.bin_centre_m(bin)), elevation_rad, cube_m,
              std::numeric_limits<float>::infinity());  // whole cubes
   look_up(key, uniform, {});
 }

@@ -25,8 +25,9 @@ class SurfaceCells {
   void resolution_cells(RandomKey key, int bin, std::size_t first, std::span<const float> elevation_rad,
                         std::span<float> uniform0, std::span<float> uniform1);
 
-  /// Uniform numbers of the cubes of `patch_m` that all the beams of a row see.
-  void patches(RandomKey key, int bin, std::span<const float> elevation_rad, float patch_m, std::span<float> uniform);
+  /// Uniform numbers of the cubes of `patch_m` that these beams see.
+  void patches(RandomKey key, int bin, std::size_t first, std::span<const float> elevation_rad, float patch_m,
+               std::span<float> uniform);
 
  private:
   void look_up(RandomKey key, std::span<float> uniform0, std::span<float> uniform1);

@@ -87,6 +87,7 @@ void run(const Arguments& a) {
                         {"isa", a.isa},
                         {"mask", {{"threshold", settings.mask_threshold}}},
                         {"T_world_sonar", describe(T_world_sonar)},
+                        {"velocity", a.velocity},
                         {"water",
                          {{"sound_speed_mps", sound_speed_mps(scene.water)},
                           {"absorption_db_per_m", absorption_db_per_m(scene.water, sonar.frequency_hz)}}}};

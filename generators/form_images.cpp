@@ -73,7 +73,7 @@ TraceOptions trace_options(const NoiseChain& noise, bool cell_truth) {
   TraceOptions options;
   options.cell_truth = cell_truth;
   options.elevation = noise.find<CoherentSpeckle>() != nullptr || noise.find<Texture>() != nullptr;
-  if (const auto* multipath = noise.find<Multipath>()) options.multipath_order = static_cast<int>(multipath->order);
+  if (const auto* multipath = noise.find<Multipath>()) options.multipath_order = static_cast<int>(std::lround(multipath->order));
   return options;
 }
 

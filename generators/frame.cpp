@@ -58,13 +58,12 @@ struct FrameMaker::Slot {
 FrameMaker::FrameMaker(Recipe recipe, std::string isa)
     : recipe_(std::move(recipe)),
       isa_(std::move(isa)),
-      sonar_(load_sonar(recipe_.sonar, window_of(recipe_, fixed_range_max(recipe_)))),
-      receiver_(sonar_),
+      receiver_(load_sonar(recipe_.sonar, window_of(recipe_, fixed_range_max(recipe_)))),
       places_(all_places(recipe_)),
       slots_(std::make_unique<Slot[]>(places_.size())) {
   for (const std::string& noise : recipe_.noise) {
     noises_.push_back(load_noise(noise));
-    check_noise(noises_.back(), sonar_);
+    check_noise(noises_.back(), receiver_.sonar);
   }
 }
 
@@ -77,7 +76,7 @@ const FrameMaker::Slot& FrameMaker::slot(int index) const {
     tbb::this_task_arena::isolate([&] {
       const PlaceRef& ref = places_[static_cast<std::size_t>(index)];
       slot.place.emplace(make_place(ref.scene, ref.layout, isa_));
-      slot.tracer.emplace(slot.place->rays, sonar_, slot.place->scene.water);
+      slot.tracer.emplace(slot.place->rays, receiver_.sonar, slot.place->scene.water);
       if (const auto* spec = std::get_if<TrajectoryPoses>(&split_of_place(index).poses)) {
         const RandomKey key = RandomKey::from_seed(recipe_.seed).child("trajectory").child(ref.name);
         slot.trajectory.emplace(*spec, slot.place->scene, key);
@@ -181,7 +180,7 @@ FramePose FrameMaker::pose(int index) const {
   const Split& split = recipe_.splits[frame.split];
   if (const auto* random = std::get_if<RandomPoses>(&split.poses)) {
     const Place& where = place(frame.place);
-    const auto sampled = sample_pose(*random, where, sonar_.geometry, frame_key(index).child("pose"));
+    const auto sampled = sample_pose(*random, where, receiver_.sonar.geometry, frame_key(index).child("pose"));
     if (!sampled) {
       throw DataError(fmt::format(
           "frame {}: no pose in {} has {} m of room and sees enough after {} tries; widen the navigable box, or lower "
@@ -218,7 +217,7 @@ SonarModel FrameMaker::sonar_for(int index) const {
 }
 
 SonarModel FrameMaker::sonar_for(int index, SampledValues& sampled) const {
-  if (!window_varies(recipe_)) return sonar_;
+  if (!window_varies(recipe_)) return receiver_.sonar;
   RandomSequence random(frame_key(index).child("range_max_m"));
   const double range_max_m = sample(*recipe_.range_max_m, random);
   sampled.emplace_back("sonar.range_max_m", range_max_m);
@@ -250,7 +249,7 @@ Frame FrameMaker::make(int index) const {
 
   const RandomKey set = RandomKey::from_seed(recipe_.seed);
   const PingSetting setting{frame.pose.T_world_sonar, set.child("surface").child(places_[frame.pose.place].name),
-                            set.child("device").child(sonar_.name), key.child("noise")};
+                            set.child("device").child(receiver_.sonar.name), key.child("noise")};
   TraceOptions options = trace_options(settings.noise, recipe_.cell_truth);
   options.motion = frame.pose.motion;
   Ping ping = this->ping(frame.pose, options);

@@ -43,7 +43,7 @@ class FrameMaker {
   ~FrameMaker();
 
   const Recipe& recipe() const { return recipe_; }
-  const SonarModel& sonar() const { return sonar_; }
+  const SonarModel& sonar() const { return receiver_.sonar; }
   const std::vector<NoiseProfile>& noises() const { return noises_; }
   const std::vector<PlaceRef>& places() const { return places_; }
   /// Builds the place if need be.
@@ -77,7 +77,6 @@ class FrameMaker {
 
   Recipe recipe_;
   std::string isa_;
-  SonarModel sonar_;
   Receiver receiver_;
   std::vector<NoiseProfile> noises_;
   std::vector<PlaceRef> places_;

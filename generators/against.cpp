@@ -38,7 +38,7 @@ Image2<double> speckle_of(const GreyImage& image, const Region& region, int numb
 
 void check_region(const NamedRegion& named, const GreyImage& image, const PingSeries& pings, int number) {
   const Region& r = named.region;
-  const int rows = image.levels.rows(), columns = image.levels.columns();
+  const int rows = image.grey.rows(), columns = image.grey.columns();
   if (r.within(rows, columns) && r.rows() >= least_region && r.columns() >= least_region) return;
   throw ConfigError(
       fmt::format("region {}: rows {} to {}, columns {} to {} must lie within the {} rows and {} columns of {} {} and "
@@ -59,7 +59,7 @@ void add_tiles(const GreyImage& image, int number, double least_level, ImageResu
 
 void compare(const GreyImage& image, const GreyImage& next, int number, const AgainstOptions& options,
              ImageResult& result) {
-  const bool same = image.levels.rows() == next.levels.rows() && image.levels.columns() == next.levels.columns();
+  const bool same = image.grey.rows() == next.grey.rows() && image.grey.columns() == next.grey.columns();
   if (!same) return;
   result.paired = true;
   const auto correlate = [&](const Region& region) {
@@ -77,8 +77,8 @@ void compare(const GreyImage& image, const GreyImage& next, int number, const Ag
 ImageResult read_one(const PingSeries& pings, int number, bool with_next, const AgainstOptions& options) {
   const GreyImage image = read_ping(pings, number);
   ImageResult result;
-  result.rows = image.levels.rows();
-  result.columns = image.levels.columns();
+  result.rows = image.grey.rows();
+  result.columns = image.grey.columns();
   result.levels = sum_levels(image);
   add_tiles(image, number, options.least_level, result);
   for (const NamedRegion& named : options.regions) {

@@ -133,8 +133,8 @@ std::string add_pictures(const PingSeries& pings, const SideFigures& side,
                          std::vector<Image2<std::uint8_t>>& pictures) {
   const std::size_t middle = side.read.size() / 2;
   const GreyImage image = read_ping(pings, side.read[middle]);
-  Image2<std::uint8_t> grey(image.levels.rows(), image.levels.columns());
-  std::transform(image.levels.pixels().begin(), image.levels.pixels().end(), grey.pixels().begin(),
+  Image2<std::uint8_t> grey(image.grey.rows(), image.grey.columns());
+  std::transform(image.grey.pixels().begin(), image.grey.pixels().end(), grey.pixels().begin(),
                  [](float level) { return static_cast<std::uint8_t>(std::clamp(level, 0.0F, 255.0F)); });
   // Beams and bins have no scale in common, so that the width is free: a pixel a beam where that is not too wide.
   const int columns = std::min(grey.columns(), most_picture_columns);

@@ -15,7 +15,7 @@ Tile tile_at(const GreyImage& image, int row, int column) {
     for (int c = column; c < column + tile_columns; c += block) {
       double sum = 0;
       for (int i = 0; i < block; ++i) {
-        for (int j = 0; j < block; ++j) sum += image.levels(r + i, c + j);
+        for (int j = 0; j < block; ++j) sum += image.grey(r + i, c + j);
       }
       const double mean = sum / (block * block);
       tile.mean_level += mean;
@@ -33,8 +33,8 @@ Tile tile_at(const GreyImage& image, int row, int column) {
 
 std::vector<Tile> all_tiles(const GreyImage& image) {
   std::vector<Tile> tiles;
-  for (int r = 0; r + tile_rows <= image.levels.rows(); r += tile_rows) {
-    for (int c = 0; c + tile_columns <= image.levels.columns(); c += tile_columns) {
+  for (int r = 0; r + tile_rows <= image.grey.rows(); r += tile_rows) {
+    for (int c = 0; c + tile_columns <= image.grey.columns(); c += tile_columns) {
       tiles.push_back(tile_at(image, r, c));
     }
   }

@@ -58,12 +58,12 @@ double LevelSums::percentile(double percent) const {
 
 LevelSums sum_levels(const GreyImage& image) {
   LevelSums sums;
-  const int rows = image.levels.rows(), columns = image.levels.columns();
-  sums.pixels = image.levels.size();
+  const int rows = image.grey.rows(), columns = image.grey.columns();
+  sums.pixels = image.grey.size();
   for (int r = 0; r < rows; ++r) {
     const std::size_t range = part_of(r, rows, range_profile_bins);
     for (int c = 0; c < columns; ++c) {
-      const double level = image.levels(r, c);
+      const double level = image.grey(r, c);
       const std::size_t beam = part_of(c, columns, beam_profile_bins);
       ++sums.histogram[static_cast<std::size_t>(std::clamp(level, 0.0, 255.0))];
       sums.zeros += level == 0 ? 1 : 0;

@@ -8,8 +8,7 @@
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/generators/even_tiles.hpp"
-#include "ensonify/output/atomic_file.hpp"
-#include "ensonify/output/png.hpp"
+#include "ensonify/output/grey_file.hpp"
 
 namespace ensonify {
 namespace {
@@ -20,24 +19,10 @@ constexpr double still_m = 1e-3;
 constexpr double still_deg = 0.01;
 constexpr std::size_t most_pixels = std::size_t{1} << 24;
 
-template <typename Grey>
-GreyImage to_levels(const Image2<Grey>& image, const fs::path& name) {
-  if (image.size() > most_pixels) {
-    throw DataError(fmt::format("{}: {} x {} pixels; an image of a ping has at most {}", name.string(), image.rows(),
-                                image.columns(), most_pixels));
-  }
-  GreyImage result{Image2<float>(image.rows(), image.columns()), sizeof(Grey) == 1 ? 1.0 : 1.0 / 257};
-  std::transform(image.pixels().begin(), image.pixels().end(), result.levels.pixels().begin(),
-                 [&](Grey v) { return static_cast<float>(v * result.step); });
-  return result;
-}
-
-GreyImage read_grey(const fs::path& file) {
-  const std::vector<std::uint8_t> bytes = read_file(file);
-  constexpr std::size_t bit_depth_at = 24;  // in IHDR, the first chunk
-  if (bytes.size() > bit_depth_at && bytes[bit_depth_at] == 16)
-    return to_levels(decode_png<std::uint16_t>(bytes, file), file);
-  return to_levels(decode_png<std::uint8_t>(bytes, file), file);
+GreyImage of_bearable_size(GreyImage image, const fs::path& name) {
+  if (image.grey.size() <= most_pixels) return image;
+  throw DataError(fmt::format("{}: {} x {} pixels; an image of a ping has at most {}", name.string(), image.grey.rows(),
+                              image.grey.columns(), most_pixels));
 }
 
 bool is_png(const fs::path& file) {
@@ -122,16 +107,16 @@ GreyImage read_ping(const PingSeries& pings, int i) {
   GreyImage image;
   fs::path name = pings.folder / file;
   if (!pings.dataset) {
-    image = read_grey(name);
+    image = of_bearable_size(read_grey(name), name);
   } else if (const Dataset& dataset = *pings.dataset; dataset.format == SampleFormat::folder) {
     name = DatasetPaths{pings.folder}.image(dataset.splits[static_cast<std::size_t>(pings.split)].name, "raw", i);
-    image = read_grey(name);
+    image = of_bearable_size(read_grey(name), name);
   } else {
-    image = std::visit([&](const auto& raw) { return to_levels(raw, name); }, read_pixels(dataset, pings.split, i).raw);
+    image = std::visit([](const auto& raw) { return to_grey(raw); }, read_pixels(dataset, pings.split, i).raw);
   }
-  if (image.levels.rows() < tile_rows || image.levels.columns() < tile_columns) {
+  if (image.grey.rows() < tile_rows || image.grey.columns() < tile_columns) {
     throw DataError(fmt::format("{}: {} x {} pixels; statistics need at least {} rows (range) and {} columns (beams)",
-                                name.string(), image.levels.rows(), image.levels.columns(), tile_rows, tile_columns));
+                                name.string(), image.grey.rows(), image.grey.columns(), tile_rows, tile_columns));
   }
   return image;
 }

@@ -66,13 +66,13 @@ std::vector<double*> numbers(SpeckleFigures& f) {
 
 Image2<double> normalised_speckle(const GreyImage& image, const Region& region, RandomKey key) {
   Image2<double> values(region.rows(), region.columns());
-  const auto columns = static_cast<std::uint64_t>(image.levels.columns());
+  const auto columns = static_cast<std::uint64_t>(image.grey.columns());
   for (int r = 0; r < region.rows(); ++r) {
     for (int c = 0; c < region.columns(); ++c) {
       const int row = region.row0 + r, column = region.column0 + c;
       const auto place = static_cast<std::uint64_t>(row) * columns + static_cast<std::uint64_t>(column);
       const double jitter = uniform_at(key, place) - 0.5;
-      values(r, c) = std::max(1e-3, image.levels(row, column) / image.step + jitter);
+      values(r, c) = std::max(1e-3, image.grey(row, column) / level_step(image.depth) + jitter);
     }
   }
   const Image2<double> means = transposed(row_means(transposed(row_means(values))));
@@ -147,7 +147,7 @@ SpeckleFigures median_figures(std::vector<SpeckleFigures> regions) {
 SpeckleFigures speckle_figures(const GreyImage& image, const Region& region, RandomKey key) {
   SpeckleFigures f;
   for (int r = region.row0; r < region.row1; ++r) {
-    for (const float level : image.levels.row(r).subspan(region.column0, region.columns())) {
+    for (const float level : image.grey.row(r).subspan(region.column0, region.columns())) {
       f.mean_level += level;
       f.zero_share += level == 0 ? 1 : 0;
       f.saturated_share += level >= saturated_level ? 1 : 0;

@@ -4,17 +4,12 @@
 #include <string>
 #include <vector>
 
+#include "ensonify/core/grey_image.hpp"
 #include "ensonify/core/image2.hpp"
 #include "ensonify/core/random.hpp"
 #include "ensonify/generators/amplitude_fits.hpp"
 
 namespace ensonify {
-
-/// A sonar image as levels of 0 to 255, rows = range (nearest first), columns = beams.
-struct GreyImage {
-  Image2<float> levels;
-  double step = 1;  ///< between neighbouring levels: 1 of 8 bits, 1 / 257 of 16
-};
 
 /// Rows [row0, row1), columns [column0, column1).
 struct Region {

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <cstring>
 
@@ -20,27 +21,19 @@ namespace fs = std::filesystem;
 constexpr float levels_16 = 257.0F;  ///< 65535 / 255
 constexpr std::size_t most_pixels = std::size_t{1} << 28;
 
-template <typename From>
-void to_levels(const From* from, float unit, Image2<float>& grey) {
-  std::transform(from, from + grey.size(), grey.pixels().begin(), [=](From x) { return static_cast<float>(x) / unit; });
+/// .PNG is a .png too.
+std::string extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::ranges::transform(extension, extension.begin(),
+                         [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
 }
 
 GreyImage read_grey_png(const fs::path& path) {
   constexpr std::size_t depth_at = 24;  // of IHDR, which comes first
   const auto bytes = read_file(path);
-  GreyImage image;
-  const auto take = [&](const auto& decoded, float unit) {
-    image.grey = Image2<float>(decoded.rows(), decoded.columns());
-    to_levels(decoded.pixels().data(), unit, image.grey);
-  };
-  if (bytes.size() > depth_at && bytes[depth_at] == 16) {
-    image.depth = GreyDepth::bits16;
-    take(decode_png<std::uint16_t>(bytes, path), levels_16);
-  } else {
-    image.depth = GreyDepth::bits8;
-    take(decode_png<std::uint8_t>(bytes, path), 1.0F);
-  }
-  return image;
+  if (bytes.size() > depth_at && bytes[depth_at] == 16) return to_grey(decode_png<std::uint16_t>(bytes, path));
+  return to_grey(decode_png<std::uint8_t>(bytes, path));
 }
 
 GreyImage read_grey_npy(const fs::path& path) {
@@ -50,30 +43,24 @@ GreyImage read_grey_npy(const fs::path& path) {
     throw DataError(fmt::format("{}: must be an array of two dimensions (range bins, beams), not of {}", path.string(),
                                 array.shape.size()));
   }
-  GreyImage image{Image2<float>(static_cast<int>(array.shape[0]), static_cast<int>(array.shape[1])), GreyDepth::real};
-  const auto take = [&]<typename From>(From, float unit, GreyDepth depth) {
-    std::vector<From> values(image.grey.size());
-    std::memcpy(values.data(), array.bytes.data(), array.bytes.size());
-    to_levels(values.data(), unit, image.grey);
-    image.depth = depth;
+  const auto pixels_of = [&]<typename Pixel>(Pixel) {
+    Image2<Pixel> pixels(static_cast<int>(array.shape[0]), static_cast<int>(array.shape[1]));
+    std::memcpy(pixels.pixels().data(), array.bytes.data(), array.bytes.size());
+    return pixels;
   };
-  if (array.descr == "|u1") {
-    take(std::uint8_t{}, 1.0F, GreyDepth::bits8);
-  } else if (array.descr == "<u2") {
-    take(std::uint16_t{}, levels_16, GreyDepth::bits16);
-  } else if (array.descr == "<f4") {
-    take(float{}, 1.0F, GreyDepth::real);
-  } else if (array.descr == "<f8") {
-    take(double{}, 1.0F, GreyDepth::real);
-  } else if (array.descr == "<i4") {
-    take(std::int32_t{}, 1.0F, GreyDepth::real);
-  } else if (array.descr == "<i8") {
-    take(std::int64_t{}, 1.0F, GreyDepth::real);
-  } else {
-    throw DataError(fmt::format("{}: holds '{}'; an image must be of uint8, uint16, int32, int64, float32 or float64",
-                                path.string(), array.descr));
-  }
-  return image;
+  const auto as_they_are = [](const auto& pixels) {
+    GreyImage image{Image2<float>(pixels.rows(), pixels.columns()), GreyDepth::real};
+    std::ranges::transform(pixels.pixels(), image.grey.pixels().begin(), [](auto v) { return static_cast<float>(v); });
+    return image;
+  };
+  if (array.descr == "|u1") return to_grey(pixels_of(std::uint8_t{}));
+  if (array.descr == "<u2") return to_grey(pixels_of(std::uint16_t{}));
+  if (array.descr == "<f4") return as_they_are(pixels_of(float{}));
+  if (array.descr == "<f8") return as_they_are(pixels_of(double{}));
+  if (array.descr == "<i4") return as_they_are(pixels_of(std::int32_t{}));
+  if (array.descr == "<i8") return as_they_are(pixels_of(std::int64_t{}));
+  throw DataError(fmt::format("{}: holds '{}'; an image must be of uint8, uint16, int32, int64, float32 or float64",
+                              path.string(), array.descr));
 }
 
 GreyImage read_grey_exr(const fs::path& path) {
@@ -100,12 +87,12 @@ std::vector<std::uint8_t> rounded_png(const Image2<float>& grey, float unit) {
 }  // namespace
 
 bool is_grey_file(const fs::path& path) {
-  const std::string extension = path.extension().string();
+  const std::string extension = extension_of(path);
   return extension == ".png" || extension == ".exr" || extension == ".npy";
 }
 
 GreyImage read_grey(const fs::path& path) {
-  const std::string extension = path.extension().string();
+  const std::string extension = extension_of(path);
   if (extension == ".png") return read_grey_png(path);
   if (extension == ".npy") return read_grey_npy(path);
   if (extension == ".exr") return read_grey_exr(path);
@@ -113,7 +100,7 @@ GreyImage read_grey(const fs::path& path) {
 }
 
 void write_grey(const fs::path& path, const GreyImage& image) {
-  const std::string extension = path.extension().string();
+  const std::string extension = extension_of(path);
   if (extension == ".png") {
     write_file(path, image.depth == GreyDepth::bits16 ? rounded_png<std::uint16_t>(image.grey, levels_16)
                                                       : rounded_png<std::uint8_t>(image.grey, 1.0F));

@@ -32,8 +32,8 @@ Image2<std::uint8_t> speckle(int rows, int columns, double level, std::uint64_t 
 }
 
 GreyImage levels_of(const Image2<std::uint8_t>& image) {
-  GreyImage result{Image2<float>(image.rows(), image.columns()), 1};
-  std::copy(image.pixels().begin(), image.pixels().end(), result.levels.pixels().begin());
+  GreyImage result{Image2<float>(image.rows(), image.columns()), GreyDepth::bits8};
+  std::copy(image.pixels().begin(), image.pixels().end(), result.grey.pixels().begin());
   return result;
 }
 

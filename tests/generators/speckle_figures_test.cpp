@@ -13,9 +13,9 @@ namespace {
 const RandomKey key = RandomKey::from_seed(11);
 
 GreyImage image_of(int rows, int columns, const auto& level) {
-  GreyImage image{Image2<float>(rows, columns), 1};
+  GreyImage image{Image2<float>(rows, columns), GreyDepth::bits8};
   for (int r = 0; r < rows; ++r) {
-    for (int c = 0; c < columns; ++c) image.levels(r, c) = static_cast<float>(level(r, c));
+    for (int c = 0; c < columns; ++c) image.grey(r, c) = static_cast<float>(level(r, c));
   }
   return image;
 }
@@ -31,9 +31,9 @@ TEST(NormalisedSpeckle, IsThePixelOverItsMirroredMean) {
   for (const auto& [r, c] : {std::pair{0, 0}, {18, 54}, {9, 27}, {3, 50}}) {
     double sum = 0;
     for (int i = -12; i <= 12; ++i) {
-      for (int j = -12; j <= 12; ++j) sum += image.levels(5 + mirrored(r + i, 19), 10 + mirrored(c + j, 55));
+      for (int j = -12; j <= 12; ++j) sum += image.grey(5 + mirrored(r + i, 19), 10 + mirrored(c + j, 55));
     }
-    EXPECT_NEAR(normalised(r, c), image.levels(5 + r, 10 + c) / (sum / 625), 0.55 / (sum / 625)) << r << " " << c;
+    EXPECT_NEAR(normalised(r, c), image.grey(5 + r, 10 + c) / (sum / 625), 0.55 / (sum / 625)) << r << " " << c;
   }
 }
 

@@ -20,8 +20,8 @@ constexpr Region bright{300, 400, 60, 200};
 constexpr Region water{70, 170, 60, 200};
 
 GreyImage grey(const SonarImage& image) {
-  GreyImage result{Image2<float>(image.grey.rows(), image.grey.columns()), 1.0};
-  for (std::size_t i = 0; i < image.grey.size(); ++i) result.levels.pixels()[i] = static_cast<float>(image.grey.pixels()[i]);
+  GreyImage result{Image2<float>(image.grey.rows(), image.grey.columns()), GreyDepth::bits8};
+  for (std::size_t i = 0; i < image.grey.size(); ++i) result.grey.pixels()[i] = static_cast<float>(image.grey.pixels()[i]);
   return result;
 }
 

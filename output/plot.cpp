@@ -48,6 +48,8 @@ const char* drawn(Series::Style style) {
       return "with points pt 7 ps 0.5";
     case Series::Style::bars:
       return "with boxes fs solid 0.75 noborder";
+    case Series::Style::bars_with_errors:
+      return "with boxerrorbars fs solid 0.5 border";
   }
   return "";
 }
@@ -56,7 +58,12 @@ void put_data(std::string& script, const Series& series, std::size_t plot, std::
   script += fmt::format("$d{}_{} << EOD\n", plot, index);
   for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
     if (std::isfinite(series.x[i]) && std::isfinite(series.y[i])) {
-      script += fmt::format("{:.9g} {:.9g}\n", series.x[i], series.y[i]);
+      script += fmt::format("{:.9g} {:.9g}", series.x[i], series.y[i]);
+      if (series.style == Series::Style::bars_with_errors) {
+        const auto or_y = [&](double end) { return std::isfinite(end) ? end : series.y[i]; };
+        script += fmt::format(" {:.9g} {:.9g}", or_y(series.y_low.at(i)), or_y(series.y_high.at(i)));
+      }
+      script += "\n";
     } else {
       script += "\n";
     }
@@ -90,8 +97,9 @@ void put_plot(std::string& script, const Plot& plot, std::size_t at) {
   for (std::size_t s = 0; s < plot.series.size(); ++s) {
     if (!has_point(plot.series[s])) continue;
     if (!items.empty()) items += ", ";
-    items += fmt::format("$d{}_{} using 1:2 {} lt {} title {}", at, s, drawn(plot.series[s].style), s % 7 + 1,
-                         quoted(plot.series[s].name));
+    const bool errors = plot.series[s].style == Series::Style::bars_with_errors;
+    items += fmt::format("$d{}_{} using {} {} lt {} title {}", at, s, errors ? "1:2:3:4" : "1:2",
+                         drawn(plot.series[s].style), s % 7 + 1, quoted(plot.series[s].name));
   }
   if (items.empty()) items = "[0:1][0:1] 2 notitle";  // an empty frame: gnuplot refuses to draw nothing
   script += "plot " + items + "\n";

@@ -13,10 +13,11 @@ namespace ensonify {
 
 /// One curve, or set of marks, of a plot. x and y are equally long; a NaN interrupts a line.
 struct Series {
-  enum class Style { line, thin_line, points, bars };
+  enum class Style { line, thin_line, points, bars, bars_with_errors };
   std::string name;  ///< in the legend; empty: not named there
   std::vector<double> x, y;
   Style style = Style::line;
+  std::vector<double> y_low = {}, y_high = {};  ///< of bars_with_errors; NaN: none there
 };
 
 /// A picture under the curves, its outer edges at these coordinates (row 0 on top).

@@ -1,0 +1,105 @@
+#include "ensonify/evaluation/image_scores.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <opencv2/imgproc.hpp>
+#include <vector>
+
+namespace ensonify {
+namespace {
+
+constexpr double full_scale = 255.0;
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+
+/// OpenCV has no const view: only for arguments that it reads.
+cv::Mat view(const Image2<float>& image) {
+  return {image.rows(), image.columns(), CV_32F, const_cast<float*>(image.pixels().data())};
+}
+
+cv::Mat doubles(const Image2<float>& image) {
+  cv::Mat mat;
+  view(image).convertTo(mat, CV_64F);
+  return mat;
+}
+
+struct Spread {
+  double mean = 0, variance = 0;
+};
+
+Spread tile_spread(const Image2<float>& image, int row, int column, int side) {
+  double sum = 0, squares = 0;
+  for (int r = row; r < row + side; ++r) {
+    for (int c = column; c < column + side; ++c) {
+      sum += image(r, c);
+      squares += static_cast<double>(image(r, c)) * image(r, c);
+    }
+  }
+  const double n = static_cast<double>(side) * side;
+  return {sum / n, std::max(squares / n - sum * sum / (n * n), 0.0)};
+}
+
+}  // namespace
+
+double psnr_db(const Image2<float>& image, const Image2<float>& clean) {
+  double squares = 0;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    const double difference = static_cast<double>(image.pixels()[i]) - clean.pixels()[i];
+    squares += difference * difference;
+  }
+  return 10.0 * std::log10(full_scale * full_scale / (squares / static_cast<double>(image.size())));
+}
+
+double ssim(const Image2<float>& image, const Image2<float>& clean) {
+  constexpr int window = 11, border = window / 2;
+  constexpr double sigma = 1.5, c1 = 0.01 * full_scale * 0.01 * full_scale, c2 = 0.03 * full_scale * 0.03 * full_scale;
+  if (std::min(image.rows(), image.columns()) < window) return nothing;
+  const auto blurred = [&](const cv::Mat& mat) {
+    cv::Mat out;
+    cv::GaussianBlur(mat, out, {window, window}, sigma);
+    return out;
+  };
+  const cv::Mat x = doubles(image), y = doubles(clean);
+  const cv::Mat mx = blurred(x), my = blurred(y), xx = blurred(x.mul(x)), yy = blurred(y.mul(y)),
+                xy = blurred(x.mul(y));
+  double sum = 0;
+  for (int r = border; r < x.rows - border; ++r) {
+    for (int c = border; c < x.cols - border; ++c) {
+      const double a = mx.at<double>(r, c), b = my.at<double>(r, c);
+      const double variances = xx.at<double>(r, c) - a * a + yy.at<double>(r, c) - b * b;
+      const double covariance = xy.at<double>(r, c) - a * b;
+      sum += (2 * a * b + c1) * (2 * covariance + c2) / ((a * a + b * b + c1) * (variances + c2));
+    }
+  }
+  return sum / (static_cast<double>(x.rows - 2 * border) * (x.cols - 2 * border));
+}
+
+double edge_preservation(const Image2<float>& image, const Image2<float>& clean) {
+  cv::Mat a, b;
+  cv::Laplacian(view(image), a, CV_32F);
+  cv::Laplacian(view(clean), b, CV_32F);
+  a -= cv::mean(a);
+  b -= cv::mean(b);
+  const double energy = a.dot(a) * b.dot(b);
+  return energy > 0.0 ? a.dot(b) / std::sqrt(energy) : nothing;
+}
+
+double equivalent_looks(const Image2<float>& image, const Image2<float>& clean) {
+  constexpr int side = 16;
+  constexpr double least_level = 20.0, most_variation = 0.1;
+  std::vector<double> looks;
+  for (int r = 0; r + side <= clean.rows(); r += side) {
+    for (int c = 0; c + side <= clean.columns(); c += side) {
+      const Spread truth = tile_spread(clean, r, c, side);
+      if (truth.mean < least_level || std::sqrt(truth.variance) > most_variation * truth.mean) continue;
+      const Spread filtered = tile_spread(image, r, c, side);
+      looks.push_back(filtered.mean * filtered.mean / std::max(filtered.variance, 1e-6));
+    }
+  }
+  if (looks.empty()) return nothing;
+  const auto middle = looks.begin() + static_cast<std::ptrdiff_t>(looks.size() / 2);
+  std::nth_element(looks.begin(), middle, looks.end());
+  return *middle;
+}
+
+}  // namespace ensonify

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <opencv2/imgproc.hpp>
+#include <optional>
 #include <vector>
 
 namespace ensonify {
@@ -23,20 +24,21 @@ cv::Mat doubles(const Image2<float>& image) {
   return mat;
 }
 
-struct Spread {
-  double mean = 0, variance = 0;
-};
-
-Spread tile_spread(const Image2<float>& image, int row, int column, int side) {
+/// (m / s)^2 of image / clean in a tile; empty where the clean twin is too dark to divide by.
+std::optional<double> looks_of_tile(const Image2<float>& image, const Image2<float>& clean, int row, int column,
+                                    int side) {
+  constexpr float least_level = 20.0F;
   double sum = 0, squares = 0;
   for (int r = row; r < row + side; ++r) {
     for (int c = column; c < column + side; ++c) {
-      sum += image(r, c);
-      squares += static_cast<double>(image(r, c)) * image(r, c);
+      if (clean(r, c) < least_level) return {};
+      const double ratio = static_cast<double>(image(r, c)) / clean(r, c);
+      sum += ratio;
+      squares += ratio * ratio;
     }
   }
-  const double n = static_cast<double>(side) * side;
-  return {sum / n, std::max(squares / n - sum * sum / (n * n), 0.0)};
+  const double n = static_cast<double>(side) * side, mean = sum / n;
+  return mean * mean / std::max(squares / n - mean * mean, 1e-9);
 }
 
 }  // namespace
@@ -86,14 +88,10 @@ double edge_preservation(const Image2<float>& image, const Image2<float>& clean)
 
 double equivalent_looks(const Image2<float>& image, const Image2<float>& clean) {
   constexpr int side = 16;
-  constexpr double least_level = 20.0, most_variation = 0.1;
   std::vector<double> looks;
   for (int r = 0; r + side <= clean.rows(); r += side) {
     for (int c = 0; c + side <= clean.columns(); c += side) {
-      const Spread truth = tile_spread(clean, r, c, side);
-      if (truth.mean < least_level || std::sqrt(truth.variance) > most_variation * truth.mean) continue;
-      const Spread filtered = tile_spread(image, r, c, side);
-      looks.push_back(filtered.mean * filtered.mean / std::max(filtered.variance, 1e-6));
+      if (const auto of_tile = looks_of_tile(image, clean, r, c, side)) looks.push_back(*of_tile);
     }
   }
   if (looks.empty()) return nothing;

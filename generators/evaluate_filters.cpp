@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <chrono>
 #include <cmath>
 #include <mutex>
@@ -131,25 +132,32 @@ FilterReport evaluate_filters(const Dataset& dataset, const std::vector<FilterCa
 
 ContactSheet filter_sheet(const Dataset& dataset, const std::vector<FilterCandidate>& candidates) {
   const SplitFrames frames = middle_frames(dataset, "test");
-  ContactSheet sheet{"a frame of every test scene through all filters, range downwards", {}};
-  sheet.rows.resize(frames.numbers.size());
+  std::vector<std::array<ContactRow, 2>> rows(frames.numbers.size());  // of a frame: the paper's parameters, all others
   visit_frames(dataset, frames, [&](int at, const JudgedFrame& frame) {
-    ContactRow row{fmt::format("{}   frame {}", frame.scene, frame.number), {}};
-    const auto add = [&](const std::string& caption, const Image2<float>& image) {
+    auto& [first, second] = rows[static_cast<std::size_t>(at)];
+    first.label = fmt::format("{}   frame {}", frame.scene, frame.number);
+    second.label = "other parameters";
+    const auto add = [](ContactRow& row, const std::string& caption, const Image2<float>& image) {
       Image2<std::uint8_t> grey(image.rows(), image.columns());
       std::ranges::transform(image.pixels(), grey.pixels().begin(), [](float x) {
         return static_cast<std::uint8_t>(std::lrint(std::clamp(x, 0.0F, 255.0F)));
       });
       row.tiles.push_back({caption, {resized(grey, picture_rows, picture_columns)}});
     };
-    add("clean", frame.clean);
-    add("mask", to_grey(frame.mask).grey);
+    add(first, "clean", frame.clean);
+    add(first, "mask", to_grey(frame.mask).grey);
     for (const FilterCandidate& candidate : candidates) {
-      add(candidate.preset.empty() ? candidate.name : candidate.name + " " + candidate.preset,
+      const bool usual = candidate.name == "raw" || candidate.preset == "paper";
+      add(usual ? first : second, candidate.name + (usual ? "" : " " + candidate.preset),
           apply(candidate.chain, frame.raw).grey);
     }
-    sheet.rows[static_cast<std::size_t>(at)] = std::move(row);
   });
+  ContactSheet sheet{"a frame of every test scene through all filters, range downwards", {}};
+  for (auto& of_frame : rows) {
+    for (ContactRow& row : of_frame) {
+      if (!row.tiles.empty()) sheet.rows.push_back(std::move(row));
+    }
+  }
   return sheet;
 }
 

@@ -49,7 +49,7 @@ const char* drawn(Series::Style style) {
     case Series::Style::bars:
       return "with boxes fs solid 0.75 noborder";
     case Series::Style::bars_with_errors:
-      return "with boxerrorbars fs solid 0.5 border";
+      return "with boxerrorbars fs solid 0.5 noborder";
   }
   return "";
 }
@@ -98,7 +98,7 @@ void put_plot(std::string& script, const Plot& plot, std::size_t at) {
     if (!has_point(plot.series[s])) continue;
     if (!items.empty()) items += ", ";
     const bool errors = plot.series[s].style == Series::Style::bars_with_errors;
-    items += fmt::format("$d{}_{} using {} {} lt {} title {}", at, s, errors ? "1:2:3:4" : "1:2",
+    items += fmt::format("$d{}_{} using {} {} lt {} title {}", at, s, errors ? "1:2:3:4:(0.8)" : "1:2",
                          drawn(plot.series[s].style), s % 7 + 1, quoted(plot.series[s].name));
   }
   if (items.empty()) items = "[0:1][0:1] 2 notitle";  // an empty frame: gnuplot refuses to draw nothing

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 
 #include "ensonify/sim/path_pair.hpp"
 
@@ -25,18 +26,27 @@ struct Group {
   bool both_ends;
 };
 
-/// Whether any of a packet and a place face each other.
+using Lanes = float __attribute__((vector_size(packet_lanes * sizeof(float))));
+
+Lanes lanes_of(const float* values) {
+  Lanes lanes;
+  std::memcpy(&lanes, values, sizeof(lanes));
+  return lanes;
+}
+
+/// Whether any of a packet and a place face each other: three quarters do not, so this is asked most. In vectors by
+/// hand: left to itself, the compiler unrolls so short a loop before it looks for vectors.
 bool any_facing(const PathPoints& a, const PathPoints& b, int j) {
-  int facing = 0;
-  for (int l = 0; l < packet_lanes; ++l) {
-    const float x = a.x[l] - b.x[j];
-    const float y = a.y[l] - b.y[j];
-    const float z = a.z[l] - b.z[j];
-    const float at_b = b.nx[j] * x + b.ny[j] * y + b.nz[j] * z;
-    const float at_a = a.nx[l] * x + a.ny[l] * y + a.nz[l] * z;
-    facing += static_cast<int>(at_b > 0.0f) & static_cast<int>(at_a < 0.0f);
-  }
-  return facing > 0;
+  const Lanes x = lanes_of(a.x) - b.x[j];
+  const Lanes y = lanes_of(a.y) - b.y[j];
+  const Lanes z = lanes_of(a.z) - b.z[j];
+  const Lanes at_b = b.nx[j] * x + b.ny[j] * y + b.nz[j] * z;
+  const Lanes at_a = lanes_of(a.nx) * x + lanes_of(a.ny) * y + lanes_of(a.nz) * z;
+  const auto facing = (at_b > 0.0f) & (at_a < 0.0f);
+  std::array<std::uint64_t, packet_lanes / 2> words;
+  static_assert(sizeof(words) == sizeof(facing));
+  std::memcpy(&words, &facing, sizeof(words));
+  return (words[0] | words[1] | words[2] | words[3]) != 0;
 }
 
 /// Adds up the energy; 0 where nothing faces.

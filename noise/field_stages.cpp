@@ -1,6 +1,7 @@
 #include "ensonify/noise/field_stages.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 
@@ -59,6 +60,29 @@ std::vector<float> white_power(const NoiseStage<double>& stage, const Receiver& 
     }
   }
   return power;
+}
+
+void add_scaled(const float* __restrict in, float factor, std::span<float> row) {
+  float* __restrict out = row.data();
+  for (std::size_t b = 0; b < row.size(); ++b) out[b] += factor * in[b];
+}
+
+/// Adds a copy of a row that lies `away` beams aside.
+void add_aside(const float* __restrict in, int beams, int away, float factor, float* __restrict out) {
+  const int last = std::min(beams, beams - away);
+  for (int b = std::max(0, -away); b < last; ++b) out[b] += factor * in[b + away];
+}
+
+/// Sums of rows that follow each other, each added up in order: eight at a time, because every sum waits for its own
+/// last addition.
+std::array<float, 8> sums_of_rows(const float* first, int rows, int beams) {
+  std::array<float, 8> sums{};
+  std::array<const float*, 8> row;
+  for (int r = 0; r < 8; ++r) row[r] = first + static_cast<std::ptrdiff_t>(std::min(r, rows - 1)) * beams;
+  for (int b = 0; b < beams; ++b) {
+    for (int r = 0; r < 8; ++r) sums[r] += row[r][b];
+  }
+  return sums;
 }
 
 struct FieldDisturbance {
@@ -125,18 +149,15 @@ struct FieldDisturbance {
     std::vector<float> re(static_cast<std::size_t>(beams()));
     std::vector<float> im = re;
     for (int bin = 0; bin < bins(); ++bin) {
-      float* __restrict out_re = field.real.row(bin).data();
-      float* __restrict out_im = field.imaginary.row(bin).data();
+      float* out_re = field.real.row(bin).data();
+      float* out_im = field.imaginary.row(bin).data();
       std::copy_n(out_re, beams(), re.begin());
       std::copy_n(out_im, beams(), im.begin());
       for_copies(stage, [&](int copy, double db) {
         const auto leak = static_cast<float>(amplitude_of_db(db));
         for (const int away : {copy * period, -copy * period}) {
-          const int last = std::min(beams(), beams() - away);
-          for (int b = std::max(0, -away); b < last; ++b) {
-            out_re[b] += leak * re[b + away];
-            out_im[b] += leak * im[b + away];
-          }
+          add_aside(re.data(), beams(), away, leak, out_re);
+          add_aside(im.data(), beams(), away, leak, out_im);
         }
       });
     }
@@ -145,7 +166,8 @@ struct FieldDisturbance {
   void operator()(const Interference<double>& stage) const {
     RandomSequence random(setting.ping.child(name));
     const int pulses = static_cast<int>(stage.pulses + random.uniform());
-    const int length = std::max(1, static_cast<int>(std::lround(stage.length_m / receiver.sonar.geometry.bin_size_m())));
+    const int length =
+        std::max(1, static_cast<int>(std::lround(stage.length_m / receiver.sonar.geometry.bin_size_m())));
     for (int pulse = 0; pulse < pulses; ++pulse) {
       const int first = random.below(bins());
       const auto& azimuth = receiver.sonar.geometry.beam_azimuth_rad;
@@ -181,7 +203,7 @@ bool add_white_sources(const NoiseChain& chain, const Receiver& receiver, const 
                        ComplexField& field) {
   bool any = false;
   const auto beams = static_cast<std::size_t>(field.real.columns());
-  std::vector<float> numbers(2 * beams), power(beams);
+  std::vector<float> numbers(2 * beams);
   const std::vector<std::string> names = stage_names(chain.stages);
   for (std::size_t i = 0; i < chain.stages.size(); ++i) {
     const auto& stage = chain.stages[i];
@@ -194,9 +216,10 @@ bool add_white_sources(const NoiseChain& chain, const Receiver& receiver, const 
     const RandomKey key = setting.ping.child(names[i]);
     for (int bin = 0; bin < field.real.rows(); ++bin) {
       uniform_row(key, static_cast<std::uint32_t>(bin), numbers);
-      std::fill(power.begin(), power.end(), row_power[bin]);
-      add_gaussian(power, std::span(numbers).first(beams), std::span(numbers).last(beams), field.real.row(bin),
-                   field.imaginary.row(bin));
+      to_normal(numbers);
+      const float scale = std::sqrt(0.5f * row_power[bin]);
+      add_scaled(numbers.data(), scale, field.real.row(bin));
+      add_scaled(numbers.data() + beams, scale, field.imaginary.row(bin));
     }
   }
   return any;
@@ -214,10 +237,13 @@ void add_leaked_power(const NoiseChain& chain, const Receiver& receiver, const I
                       Image2<float>& leaked) {
   if (const auto* arcs = chain.find<SidelobeArcs>()) {
     const auto leak = static_cast<float>(power_of_db(arcs->level_db) * receiver.coherent.noise_gain());
-    for (int bin = 0; bin < power.rows(); ++bin) {
-      float sum = 0.0f;
-      for (const float p : power.row(bin)) sum += p;
-      for (float& p : leaked.row(bin)) p += leak * sum;
+    for (int first = 0; first < power.rows(); first += 8) {
+      const int rows = std::min(8, power.rows() - first);
+      const std::array<float, 8> sums = sums_of_rows(power.row(first).data(), rows, power.columns());
+      for (int r = 0; r < rows; ++r) {
+        const float sum = leak * sums[r];
+        for (float& p : leaked.row(first + r)) p += sum;
+      }
     }
   }
   if (const auto* talk = chain.find<CrossTalk>()) {
@@ -225,13 +251,11 @@ void add_leaked_power(const NoiseChain& chain, const Receiver& receiver, const I
     const int beams = power.columns();
     const Image2<float> channels = receiver.spread.apply(power);
     for (int bin = 0; bin < power.rows(); ++bin) {
-      const float* __restrict in = channels.row(bin).data();
-      float* __restrict out = leaked.row(bin).data();
+      const float* in = channels.row(bin).data();
+      float* out = leaked.row(bin).data();
       FieldDisturbance::for_copies(*talk, [&](int copy, double db) {
         const auto leak = static_cast<float>(power_of_db(db));
-        for (const int away : {copy * period, -copy * period}) {
-          for (int b = std::max(0, -away); b < std::min(beams, beams - away); ++b) out[b] += leak * in[b + away];
-        }
+        for (const int away : {copy * period, -copy * period}) add_aside(in, beams, away, leak, out);
       });
     }
   }

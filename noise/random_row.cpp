@@ -35,9 +35,13 @@ inline float log_of(float x) {
   return f + tail + 0.693359375f * exponent;
 }
 
-inline float normal_inline(float u) {
-  // log((1 - x)(1 + x)) with x = 2u - 1, formed without cancellation near u = 0.
-  const float w = -log_of(4.0f * u * (1.0f - u));
+/// -log((1 - x)(1 + x)) with x = 2u - 1, formed without cancellation near u = 0.
+inline float depth_of(float u) { return -log_of(4.0f * u * (1.0f - u)); }
+/// From this depth on a number is in the tails: one in 300.
+constexpr float tail_depth = 5.0f;
+
+/// erfinv(x) / x of w = depth_of(u), in the centre and in the tails.
+inline float centre_of(float w) {
   const float a = w - 2.5f;
   float centre = 2.81022636e-08f;
   centre = 3.43273939e-07f + centre * a;
@@ -47,7 +51,10 @@ inline float normal_inline(float u) {
   centre = -0.00125372503f + centre * a;
   centre = -0.00417768164f + centre * a;
   centre = 0.246640727f + centre * a;
-  centre = 1.50140941f + centre * a;
+  return 1.50140941f + centre * a;
+}
+
+inline float tail_of(float w) {
   const float b = std::sqrt(std::max(w, 0.0f)) - 3.0f;
   float tail = -0.000200214257f;
   tail = 0.000100950558f + tail * b;
@@ -57,8 +64,24 @@ inline float normal_inline(float u) {
   tail = -0.0076224613f + tail * b;
   tail = 0.00943887047f + tail * b;
   tail = 1.00167406f + tail * b;
-  tail = 2.83297682f + tail * b;
-  return 1.41421356f * (w < 5.0f ? centre : tail) * (2.0f * u - 1.0f);
+  return 2.83297682f + tail * b;
+}
+
+inline float normal_inline(float u, float factor) { return 1.41421356f * factor * (2.0f * u - 1.0f); }
+
+/// In passes: each is a short chain of operations, so that the processor has several of them in work, and hardly any
+/// chunk needs the tails.
+inline void normals_of(float* __restrict u, std::size_t count, float* __restrict w) {
+  int tails = 0;
+  for (std::size_t i = 0; i < count; ++i) w[i] = depth_of(u[i]);
+  for (std::size_t i = 0; i < count; ++i) tails += static_cast<int>(!(w[i] < tail_depth));
+  if (tails == 0) {
+    for (std::size_t i = 0; i < count; ++i) u[i] = normal_inline(u[i], centre_of(w[i]));
+  } else {
+    for (std::size_t i = 0; i < count; ++i) {
+      u[i] = normal_inline(u[i], w[i] < tail_depth ? centre_of(w[i]) : tail_of(w[i]));
+    }
+  }
 }
 
 inline float rayleigh_inline(float u) { return std::sqrt(std::max(-2.0f * log_of(u), 0.0f)); }
@@ -87,8 +110,7 @@ inline void philox_row(RandomKey key, std::uint32_t first, std::uint32_t row, st
 
 }  // namespace
 
-void words_at(RandomKey key, const Counters& counters, std::span<std::uint32_t> word0,
-              std::span<std::uint32_t> word1) {
+void words_at(RandomKey key, const Counters& counters, std::span<std::uint32_t> word0, std::span<std::uint32_t> word1) {
   std::size_t first = 0;
   const auto look_up = [&](std::size_t count) {
     PhiloxLanes philox{};
@@ -118,11 +140,18 @@ void uniform_row(RandomKey key, std::uint32_t row, std::span<float> uniforms) {
   }
 }
 
-float normal_of(float uniform) { return normal_inline(uniform); }
+float normal_of(float uniform) {
+  const float w = depth_of(uniform);
+  return normal_inline(uniform, w < tail_depth ? centre_of(w) : tail_of(w));
+}
 float rayleigh_of(float uniform) { return rayleigh_inline(uniform); }
 
 void to_normal(std::span<float> uniforms) {
-  for (float& u : uniforms) u = normal_inline(u);
+  constexpr std::size_t chunk = 32;
+  std::array<float, chunk> depths;
+  std::size_t first = 0;
+  for (; first + chunk <= uniforms.size(); first += chunk) normals_of(uniforms.data() + first, chunk, depths.data());
+  normals_of(uniforms.data() + first, uniforms.size() - first, depths.data());
 }
 
 void to_rayleigh(std::span<float> uniforms) {

@@ -12,9 +12,9 @@ namespace ensonify {
 namespace {
 
 bool is_dark(std::span<const float> row) {
-  float sum = 0.0f;
-  for (const float p : row) sum += p;
-  return sum == 0.0f;
+  int lit = 0;
+  for (const float p : row) lit |= static_cast<int>(p != 0.0f);
+  return lit == 0;
 }
 
 /// Gamma shape of the incoherent stages: looks, or the texture of K.
@@ -41,26 +41,24 @@ void add_scatterers(const Echo& layers, SurfaceCells& cells, RandomKey surface, 
   constexpr std::size_t chunk = 32;  // of beams: most of an image is dark
   std::array<float, chunk> uniform0, uniform1;
   const auto beams = static_cast<std::size_t>(layers.direct.columns());
-  const auto add_layer = [&](const Image2<float>& layer, RandomKey key, int bin) {
-    for (std::size_t first = 0; first < beams; first += chunk) {
-      const std::size_t count = std::min(chunk, beams - first);
-      const auto power = layer.row(bin).subspan(first, count);
-      if (is_dark(power)) continue;
-      const auto elevation = layers.elevation_rad.empty() ? std::span<const float>{}
-                                                          : layers.elevation_rad.row(bin).subspan(first, count);
-      const auto numbers0 = std::span(uniform0).first(count);
-      const auto numbers1 = std::span(uniform1).first(count);
-      cells.resolution_cells(key, bin, first, elevation, numbers0, numbers1);
-      add_gaussian(power, numbers0, numbers1, field.real.row(bin).subspan(first, count),
-                   field.imaginary.row(bin).subspan(first, count));
+  const auto add_layer = [&](const Image2<float>& layer, RandomKey key) {
+    for (int bin = 0; bin < layer.rows(); ++bin) {
+      for (std::size_t first = 0; first < beams; first += chunk) {
+        const std::size_t count = std::min(chunk, beams - first);
+        const auto power = layer.row(bin).subspan(first, count);
+        if (is_dark(power)) continue;
+        const auto elevation = layers.elevation_rad.empty() ? std::span<const float>{}
+                                                            : layers.elevation_rad.row(bin).subspan(first, count);
+        const auto numbers0 = std::span(uniform0).first(count);
+        const auto numbers1 = std::span(uniform1).first(count);
+        cells.resolution_cells(key, bin, first, elevation, numbers0, numbers1);
+        add_gaussian(power, numbers0, numbers1, field.real.row(bin).subspan(first, count),
+                     field.imaginary.row(bin).subspan(first, count));
+      }
     }
   };
-  const RandomKey direct = surface.child("direct");
-  const RandomKey multipath = surface.child("multipath");
-  for (int bin = 0; bin < layers.direct.rows(); ++bin) {
-    add_layer(layers.direct, direct, bin);
-    if (!layers.multipath.empty()) add_layer(layers.multipath, multipath, bin);
-  }
+  add_layer(layers.direct, surface.child("direct"));
+  if (!layers.multipath.empty()) add_layer(layers.multipath, surface.child("multipath"));
 }
 
 ComplexField incoherent_field(const NoiseChain& chain, const Image2<float>& intensity, RandomKey ping) {

@@ -11,7 +11,9 @@ namespace {
 
 Image2<std::uint8_t> mask_of(const Image2<std::uint8_t>& clean, int threshold) {
   Image2<std::uint8_t> mask(clean.rows(), clean.columns());
-  for (std::size_t i = 0; i < clean.size(); ++i) mask.pixels()[i] = clean.pixels()[i] >= threshold ? 255 : 0;
+  const std::span<const std::uint8_t> in = clean.pixels();
+  const std::span<std::uint8_t> out = mask.pixels();  // spans by value, since a byte may be part of any object
+  for (std::size_t i = 0; i < in.size(); ++i) out[i] = in[i] >= threshold ? 255 : 0;
   return mask;
 }
 
@@ -57,7 +59,9 @@ Image2<std::uint8_t> labels_of(const SonarModel& sonar, int threshold, const Ima
     };
     compete(power.multipath, PixelLabel::multipath);
     compete(power.sidelobe, PixelLabel::sidelobe);
-    for (std::size_t b = 0; b < beams; ++b) labels(bin, static_cast<int>(b)) = static_cast<std::uint8_t>(label[b]);
+    const std::span<std::uint8_t> out = labels.row(bin);
+    const std::span<const int> names = label;
+    for (std::size_t b = 0; b < beams; ++b) out[b] = static_cast<std::uint8_t>(names[b]);
   }
   return labels;
 }
@@ -73,7 +77,8 @@ TraceOptions trace_options(const NoiseChain& noise, bool cell_truth) {
   TraceOptions options;
   options.cell_truth = cell_truth;
   options.elevation = noise.find<CoherentSpeckle>() != nullptr || noise.find<Texture>() != nullptr;
-  if (const auto* multipath = noise.find<Multipath>()) options.multipath_order = static_cast<int>(std::lround(multipath->order));
+  if (const auto* multipath = noise.find<Multipath>())
+    options.multipath_order = static_cast<int>(std::lround(multipath->order));
   return options;
 }
 

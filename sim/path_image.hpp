@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <vector>
 
 #include "ensonify/core/image2.hpp"
@@ -36,20 +37,27 @@ class PathImage {
   /// Bins x beams, before absorption.
   Image2<float> over_beams(int columns, int beams) const {
     Image2<float> image(bins_.count, beams);
-    for (int c = 0; c < columns; ++c) {
-      // Beams that a column covers, a beam being 1 long.
-      const double first = static_cast<double>(c) * beams / columns;
-      const double last = static_cast<double>(c + 1) * beams / columns;
-      const double* from = differences_.data() + static_cast<std::size_t>(c) * stride_;
-      double largest = 0.0;
-      double level = 0.0;
-      for (int bin = 0; bin < bins_.count; ++bin) largest = std::max(largest, level += from[bin]);
-      for (int beam = static_cast<int>(first); beam < beams && beam < last; ++beam) {
-        const double share = (std::min(last, beam + 1.0) - std::max(first, 1.0 * beam)) / (last - first);
-        level = 0.0;
-        for (int bin = 0; bin < bins_.count; ++bin) {
-          level += from[bin];
-          if (level > 1e-12 * largest) image(bin, beam) += static_cast<float>(share * level);
+    constexpr int together = 8;  // columns: whole cache lines of the row-major image are written
+    std::vector<Share> shares;
+    for (int first = 0; first < columns; first += together) {
+      const int count = std::min(together, columns - first);
+      std::array<double, together> level{}, least{};
+      std::array<const double*, together> from{};
+      shares.clear();
+      for (int c = 0; c < count; ++c) {
+        from[c] = differences_.data() + static_cast<std::size_t>(first + c) * stride_;
+        add_shares(first + c, c, columns, beams, shares);
+      }
+      for (int bin = 0; bin < bins_.count; ++bin) {
+        for (int c = 0; c < count; ++c) least[c] = std::max(least[c], level[c] += from[c][bin]);
+      }
+      for (double& largest : least) largest *= 1e-12;  // below are rounding errors
+      level.fill(0.0);
+      for (int bin = 0; bin < bins_.count; ++bin) {
+        for (int c = 0; c < count; ++c) level[c] += from[c][bin];
+        float* out = image.row(bin).data();
+        for (const Share& s : shares) {
+          if (level[s.column] > least[s.column]) out[s.beam] += static_cast<float>(s.share * level[s.column]);
         }
       }
     }
@@ -57,6 +65,22 @@ class PathImage {
   }
 
  private:
+  /// Of a column's energy, what a beam gets.
+  struct Share {
+    int beam;
+    int column;  ///< of those that are read together
+    double share;
+  };
+
+  static void add_shares(int column, int name, int columns, int beams, std::vector<Share>& shares) {
+    // Beams that a column covers, a beam being 1 long.
+    const double first = static_cast<double>(column) * beams / columns;
+    const double last = static_cast<double>(column + 1) * beams / columns;
+    for (int beam = static_cast<int>(first); beam < beams && beam < last; ++beam) {
+      shares.push_back({beam, name, (std::min(last, beam + 1.0) - std::max(first, 1.0 * beam)) / (last - first)});
+    }
+  }
+
   static void step(double* at, float place, double density) {
     const int bin = static_cast<int>(place);
     const double within = static_cast<double>(place - static_cast<float>(bin));

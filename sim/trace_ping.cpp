@@ -23,10 +23,28 @@ void keep_first_hits(const RayColumn& rays, int column, float range_max_m, Image
   }
 }
 
+/// A block of beams, a beam a row, into the columns of an image from `first` on.
+void write_columns(const Image2<float>& block, int beams, int first, Image2<float>& image) {
+  for (int bin = 0; bin < image.rows(); ++bin) {
+    float* __restrict out = &image(bin, first);
+    const float* __restrict in = &block(0, bin);
+    for (int b = 0; b < beams; ++b) out[b] = in[static_cast<std::ptrdiff_t>(b) * block.columns()];
+  }
+}
+
+/// Moments of energy become means of what was weighted with it; 0 where there is none.
+void divide(std::span<float> moment, std::span<const float> energy) {
+  for (std::size_t i = 0; i < moment.size(); ++i) moment[i] = energy[i] > 0.0f ? moment[i] / energy[i] : 0.0f;
+}
+
 }  // namespace
 
 PingTracer::PingTracer(const RayScene& scene, const SonarModel& sonar, const Water& water)
-    : scene_(&scene), geometry_(sonar.geometry), sound_speed_mps_(sound_speed_mps(water)), fan_(sonar), multipath_(scene, sonar, fan_, water) {
+    : scene_(&scene),
+      geometry_(sonar.geometry),
+      sound_speed_mps_(sound_speed_mps(water)),
+      fan_(sonar),
+      multipath_(scene, sonar, fan_, water) {
   const double alpha = absorption_db_per_m(water, sonar.frequency_hz);
   for (int bin = 0; bin < geometry_.range_bins; ++bin) {
     const double r = geometry_.bin_centre_m(bin);
@@ -87,13 +105,13 @@ Ping PingTracer::trace(const Pose& T_world_sonar, const TraceOptions& options) c
       }
       ping.truth.shadow_start_bin[beam] = shadow.start_bin();
     }
-    for (int bin = 0; bin < bins.count; ++bin) {
-      float* out = &ping.echo.direct(bin, block);
-      for (int b = 0; b < in_block; ++b) out[b] = row_loss_[bin] * energy(b, bin);
-      if (!options.elevation) continue;
-      float* elevation = &ping.echo.elevation_rad(bin, block);
-      for (int b = 0; b < in_block; ++b) elevation[b] = energy(b, bin) > 0.0f ? moment(b, bin) / energy(b, bin) : 0.0f;
+    for (int b = 0; b < in_block; ++b) {
+      const std::span<float> of_beam = energy.row(b);
+      if (options.elevation) divide(moment.row(b), of_beam);
+      for (std::size_t bin = 0; bin < of_beam.size(); ++bin) of_beam[bin] *= row_loss_[bin];
     }
+    write_columns(energy, in_block, block, ping.echo.direct);
+    if (options.elevation) write_columns(moment, in_block, block, ping.echo.elevation_rad);
   }
   if (!options.motion.still()) {
     ping.echo = receive_in_motion(ping.echo, geometry_, options.motion, sound_speed_mps_);

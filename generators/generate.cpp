@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -18,11 +19,24 @@ namespace {
 
 /// A trajectory into a wall is a mistake in the configuration: found before any work is done.
 void check_trajectories(const FrameMaker& maker) {
+  std::vector<int> swum;
   int place = 0;
   for (const Split& split : maker.recipe().splits) {
     for (std::size_t i = 0; i < split.places.size(); ++i, ++place) {
-      if (std::holds_alternative<TrajectoryPoses>(split.poses)) maker.check_trajectory(place);
+      if (std::holds_alternative<TrajectoryPoses>(split.poses)) swum.push_back(place);
     }
+  }
+  // Places take a while to load. Of several mistakes the first is reported, whichever thread is faster.
+  std::vector<std::exception_ptr> mistakes(swum.size());
+  parallel_for(static_cast<int>(swum.size()), [&](int i) {
+    try {
+      maker.check_trajectory(swum[static_cast<std::size_t>(i)]);
+    } catch (...) {
+      mistakes[static_cast<std::size_t>(i)] = std::current_exception();
+    }
+  });
+  for (const std::exception_ptr& mistake : mistakes) {
+    if (mistake) std::rethrow_exception(mistake);
   }
 }
 

@@ -12,8 +12,8 @@ namespace {
 /// Keeps whole numbers exact in single precision for a kilometre of world.
 constexpr float least_cube_m = 1e-4f;
 
-/// Cubes of somewhat less than the beams' distance: were they much smaller, pieces between two beams would be seen by none; were they
-/// larger, neighbours would often see the same.
+/// Cubes of somewhat less than the beams' distance: were they much smaller, pieces between two beams would be seen by
+/// none; were they larger, neighbours would often see the same.
 constexpr int sizes_an_octave = 8;
 
 inline std::uint32_t whole(float x) { return static_cast<std::uint32_t>(static_cast<std::int32_t>(std::floor(x))); }
@@ -26,20 +26,27 @@ SurfaceCells::SurfaceCells(const SonarModel& sonar, const Pose& T_world_sonar)
       up_(T_world_sonar.linear().col(2).cast<float>()) {
   const auto beams = static_cast<std::size_t>(geometry_.beams());
   const auto& azimuth = geometry_.beam_azimuth_rad;
-  beam_spacing_ = beams > 1 ? static_cast<float>((std::sin(azimuth.front()) - std::sin(azimuth.back())) /
-                                                 static_cast<double>(beams - 1))
-                            : static_cast<float>(sonar.receive_azimuth.width_rad());
+  beam_spacing_ =
+      beams > 1
+          ? static_cast<float>((std::sin(azimuth.front()) - std::sin(azimuth.back())) / static_cast<double>(beams - 1))
+          : static_cast<float>(sonar.receive_azimuth.width_rad());
   for (const double theta : azimuth) {
     const Vec3 ahead = T_world_sonar.linear() * Vec3(std::cos(theta), std::sin(theta), 0.0);
     ahead_x_.push_back(static_cast<float>(ahead.x()));
     ahead_y_.push_back(static_cast<float>(ahead.y()));
     ahead_z_.push_back(static_cast<float>(ahead.z()));
   }
+  const auto slice_m = static_cast<float>(geometry_.bin_size_m());
+  for (int bin = 0; bin < geometry_.range_bins; ++bin) {
+    const auto range_m = static_cast<float>(geometry_.bin_centre_m(bin));
+    const float apart_m = std::max({beam_spacing_ * range_m, 0.25f * slice_m, least_cube_m});
+    cube_size_.push_back(static_cast<int>(std::lround(sizes_an_octave * std::log2(0.88f * apart_m))));
+  }
   for (auto* v : {&c0_, &c1_, &c2_, &c3_, &word0_, &word1_}) v->resize(beams);
 }
 
-void SurfaceCells::name_cubes(std::size_t first, std::size_t count, float range_m,
-                              std::span<const float> elevation_rad, float cube_m, float slice_m) {
+void SurfaceCells::name_cubes(std::size_t first, std::size_t count, float range_m, std::span<const float> elevation_rad,
+                              float cube_m, float slice_m) {
   const float per_cube = 1.0f / cube_m;
   const float per_slice = 1.0f / slice_m;
   const float* __restrict ax = ahead_x_.data() + first;
@@ -61,8 +68,8 @@ void SurfaceCells::name_cubes(std::size_t first, std::size_t count, float range_
     const float y = (origin_.y() + range_m * dy) * per_cube;
     const float z = (origin_.z() + range_m * dz) * per_cube;
     // From the cube's own middle: seen from there, the slices hardly move when the sonar turns.
-    const float along = (x - std::floor(x) - 0.5f) * dx + (y - std::floor(y) - 0.5f) * dy +
-                        (z - std::floor(z) - 0.5f) * dz;
+    const float along =
+        (x - std::floor(x) - 0.5f) * dx + (y - std::floor(y) - 0.5f) * dy + (z - std::floor(z) - 0.5f) * dz;
     c0[b] = whole(x);
     c1[b] = whole(y);
     c2[b] = whole(z);
@@ -83,15 +90,21 @@ void SurfaceCells::look_up(RandomKey key, std::span<float> uniform0, std::span<f
   for (std::size_t b = 0; b < uniform1.size(); ++b) uniform1[b] = uniform_of(word1_[b]);
 }
 
+RandomKey SurfaceCells::key_of_size(RandomKey key, int size) {
+  if (!last_key_ || last_key_->of != key || last_key_->size != size) {
+    last_key_ = KeyOfSize{key, size, key.child(static_cast<std::uint64_t>(size + 1024))};
+  }
+  return last_key_->key;
+}
+
 void SurfaceCells::resolution_cells(RandomKey key, int bin, std::size_t first, std::span<const float> elevation_rad,
                                     std::span<float> uniform0, std::span<float> uniform1) {
   const auto range_m = static_cast<float>(geometry_.bin_centre_m(bin));
   const auto slice_m = static_cast<float>(geometry_.bin_size_m());
-  const float apart_m = std::max({beam_spacing_ * range_m, 0.25f * slice_m, least_cube_m});
-  const int size = static_cast<int>(std::lround(sizes_an_octave * std::log2(0.88f * apart_m)));
-  name_cubes(first, uniform0.size(), range_m, elevation_rad,
-             std::exp2(static_cast<float>(size) / sizes_an_octave), slice_m);
-  look_up(key.child(static_cast<std::uint64_t>(size + 1024)), uniform0, uniform1);
+  const int size = cube_size_[static_cast<std::size_t>(bin)];
+  name_cubes(first, uniform0.size(), range_m, elevation_rad, std::exp2(static_cast<float>(size) / sizes_an_octave),
+             slice_m);
+  look_up(key_of_size(key, size), uniform0, uniform1);
 }
 
 void SurfaceCells::patches(RandomKey key, int bin, std::size_t first, std::span<const float> elevation_rad,

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -10,9 +11,9 @@
 
 namespace ensonify {
 
-/// Random numbers that belong to pieces of the surface and not to pixels: the piece that a pixel sees is found from range,
-/// bearing and mean elevation of its echo, and named by where it lies in the world. So a sonar that comes back sees the
-/// same numbers, and one that moves sees them change as pieces leave its cells.
+/// Random numbers that belong to pieces of the surface and not to pixels: the piece that a pixel sees is found from
+/// range, bearing and mean elevation of its echo, and named by where it lies in the world. So a sonar that comes back
+/// sees the same numbers, and one that moves sees them change as pieces leave its cells.
 class SurfaceCells {
  public:
   SurfaceCells(const SonarModel& sonar, const Pose& T_world_sonar);
@@ -34,9 +35,18 @@ class SurfaceCells {
   void name_cubes(std::size_t first, std::size_t count, float range_m, std::span<const float> elevation_rad,
                   float cube_m, float slice_m);
 
+  RandomKey key_of_size(RandomKey key, int size);
+
   SonarGeometry geometry_;
+  std::vector<int> cube_size_;  ///< a bin: in eighths of an octave over a metre
   Eigen::Vector3f origin_, up_;
-  float beam_spacing_;                      ///< sines
+  float beam_spacing_;  ///< sines
+  struct KeyOfSize {
+    RandomKey of;
+    int size;
+    RandomKey key;
+  };
+  std::optional<KeyOfSize> last_key_;               ///< the same for many cells of a row, and for many rows
   std::vector<float> ahead_x_, ahead_y_, ahead_z_;  ///< a beam: its horizontal direction, in the world
   std::vector<std::uint32_t> c0_, c1_, c2_, c3_, word0_, word1_;
 };

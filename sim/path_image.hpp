@@ -34,6 +34,11 @@ class PathImage {
     step(at, std::min(far, count), -density);
   }
 
+  /// False where `add` would lose such a box, wherever its energy arrives.
+  bool may_hold(float centre_m, float extent_m) const {
+    return bins_.place_of(centre_m - 0.5f * extent_m) - 0.5f < static_cast<float>(bins_.count);
+  }
+
   /// Bins x beams, before absorption.
   Image2<float> over_beams(int columns, int beams) const {
     Image2<float> image(bins_.count, beams);

@@ -85,6 +85,14 @@ int pick(const Group& group, float sum, float u) {
   return last;
 }
 
+/// Whether any of the paths ends within the window: what lies beyond is lost, seen or not.
+bool reaches_window(const Group& group, const PathImage& image) {
+  for (int k = 0; k < pairs; ++k) {
+    if (group.energy[k] > 0.0f && image.may_hold(group.half_length_m[k], group.extent_m[k])) return true;
+  }
+  return false;
+}
+
 void add(const Group& group, PathImage& image) {
   for (int k = 0; k < pairs; ++k) {
     if (group.energy[k] <= 0.0f) continue;
@@ -130,6 +138,7 @@ void add_joined_pairs(const PathView& view, const PathHits& hits, PathImage& ima
         const float sum = evaluate(group);
         if (!(sum > 0.0f)) continue;
         const int k = pick(group, sum, static_cast<float>((++asked * golden) >> 8) * 0x1p-24f);
+        if (!reaches_window(group, image)) continue;
         const Eigen::Vector3f start = lifted(*group.from[k / packet_lanes], tile, view.axes);
         rays.origin[waiting] = start;
         rays.direction[waiting] = lifted(*group.to[k / packet_lanes], k % packet_lanes, view.axes) - start;

@@ -22,7 +22,8 @@ Image2<float> amplitude_band(const Aperture& aperture, const std::vector<double>
   int reach = 0;
   for (int b = 0; b < beams; ++b) {
     while (reach < farthest_beams && b + reach + 1 < beams &&
-           std::sin(azimuth[b]) - std::sin(azimuth[b + reach + 1]) <= reach_sine) ++reach;
+           std::sin(azimuth[b]) - std::sin(azimuth[b + reach + 1]) <= reach_sine)
+      ++reach;
   }
   Image2<float> band(2 * reach + 1, beams);
   for (int d = 0; d < band.rows(); ++d) {
@@ -72,8 +73,25 @@ Image2<float> spread_range(const Image2<float>& in, const std::vector<float>& ta
   return result;
 }
 
-/// Range taps, then the band matrix: a few beams of all rows at a time, so that their weights stay at hand and their sums
-/// in registers.
+/// Part of the diagonals, from `first` up to `end`.
+struct Diagonals {
+  int first, end;
+};
+
+/// Runs of diagonals that give these beams anything: the main lobe is left out of the sidelobes' power.
+std::vector<Diagonals> runs_of_diagonals(const Image2<float>& band, int beam, int beams) {
+  std::vector<Diagonals> runs;
+  for (int d = 0; d < band.rows(); ++d) {
+    const auto weights = band.row(d).subspan(static_cast<std::size_t>(beam), static_cast<std::size_t>(beams));
+    if (std::all_of(weights.begin(), weights.end(), [](float w) { return w == 0.0f; })) continue;
+    if (runs.empty() || runs.back().end != d) runs.push_back({d, d});
+    runs.back().end = d + 1;
+  }
+  return runs;
+}
+
+/// Range taps, then the band matrix: a few beams of all rows at a time, so that their weights stay at hand and their
+/// sums in registers.
 Image2<float> spread(const Image2<float>& in, const std::vector<float>& taps, const Image2<float>& band) {
   constexpr int chunk = 32;
   const int beams = in.columns();
@@ -82,12 +100,15 @@ Image2<float> spread(const Image2<float>& in, const std::vector<float>& taps, co
   Image2<float> result(in.rows(), beams);
   int b = 0;
   for (; b + chunk <= beams; b += chunk) {
+    const std::vector<Diagonals> runs = runs_of_diagonals(band, b, chunk);
     for (int bin = 0; bin < in.rows(); ++bin) {
       const float* __restrict line = padded.row(bin).data() + b;
       std::array<float, chunk> sum{};
-      for (int d = 0; d < diagonals; ++d) {
-        const float* __restrict weight = band.row(d).data() + b;
-        for (int i = 0; i < chunk; ++i) sum[i] += weight[i] * line[d + i];
+      for (const auto [first, end] : runs) {
+        for (int d = first; d < end; ++d) {
+          const float* __restrict weight = band.row(d).data() + b;
+          for (int i = 0; i < chunk; ++i) sum[i] += weight[i] * line[d + i];
+        }
       }
       std::copy(sum.begin(), sum.end(), result.row(bin).data() + b);
     }

@@ -1,6 +1,7 @@
 #include "ensonify/output/png.hpp"
 
 #include <fmt/format.h>
+#include <isa-l/igzip_lib.h>
 #include <libdeflate.h>
 
 #include <algorithm>
@@ -18,7 +19,6 @@ namespace ensonify {
 namespace {
 
 constexpr std::array<std::uint8_t, 8> signature{0x89, 'P', 'N', 'G', '\r', '\n', 0x1a, '\n'};
-constexpr int fastest = 1;
 constexpr int thorough = 9;
 /// Of IHDR, PNG specification 11.2.2.
 enum class ColourType : std::uint8_t { grey = 0, colour = 2 };
@@ -40,13 +40,38 @@ void put_chunk(std::vector<std::uint8_t>& out, std::string_view type, std::span<
   put_u32(out, libdeflate_crc32(0, out.data() + start, out.size() - start));
 }
 
+std::vector<std::uint8_t> pack_small(std::span<const std::uint8_t> bytes) {
+  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
+      libdeflate_alloc_compressor(thorough), libdeflate_free_compressor);
+  std::vector<std::uint8_t> packed(libdeflate_zlib_compress_bound(compressor.get(), bytes.size()));
+  packed.resize(libdeflate_zlib_compress(compressor.get(), bytes.data(), bytes.size(), packed.data(), packed.size()));
+  return packed;
+}
+
+/// ISA-L's level 1: four times as fast as libdeflate's fastest, and 5 % larger.
+std::vector<std::uint8_t> pack_fast(std::span<const std::uint8_t> bytes) {
+  constexpr std::size_t headers = 1024;
+  std::vector<std::uint8_t> packed(bytes.size() + bytes.size() / 16 + headers), tables(ISAL_DEF_LVL1_DEFAULT);
+  const auto stream = std::make_unique<isal_zstream>();
+  isal_deflate_stateless_init(stream.get());
+  stream->level = 1;
+  stream->level_buf = tables.data();
+  stream->level_buf_size = static_cast<std::uint32_t>(tables.size());
+  stream->gzip_flag = IGZIP_ZLIB;
+  stream->flush = NO_FLUSH;
+  stream->end_of_stream = 1;
+  stream->next_in = const_cast<std::uint8_t*>(bytes.data());  // read only; the type is C's
+  stream->avail_in = static_cast<std::uint32_t>(bytes.size());
+  stream->next_out = packed.data();
+  stream->avail_out = static_cast<std::uint32_t>(packed.size());
+  if (isal_deflate_stateless(stream.get()) != COMP_OK) return pack_small(bytes);
+  packed.resize(stream->total_out);
+  return packed;
+}
+
 std::vector<std::uint8_t> encode(std::span<const std::uint8_t> scanlines, int width, int height, int bits,
                                  ColourType type = ColourType::grey) {
-  const std::unique_ptr<libdeflate_compressor, decltype(&libdeflate_free_compressor)> compressor(
-      libdeflate_alloc_compressor(type == ColourType::grey ? fastest : thorough), libdeflate_free_compressor);
-  std::vector<std::uint8_t> packed(libdeflate_zlib_compress_bound(compressor.get(), scanlines.size()));
-  packed.resize(
-      libdeflate_zlib_compress(compressor.get(), scanlines.data(), scanlines.size(), packed.data(), packed.size()));
+  const std::vector<std::uint8_t> packed = type == ColourType::grey ? pack_fast(scanlines) : pack_small(scanlines);
   std::vector<std::uint8_t> header;
   put_u32(header, static_cast<std::uint32_t>(width));
   put_u32(header, static_cast<std::uint32_t>(height));

@@ -53,13 +53,15 @@ TEST(ImageScores, EdgesAreKeptByAScaleAndLostByANegative) {
   EXPECT_TRUE(std::isnan(edge_preservation(constant(3), square())));
 }
 
-/// Rayleigh amplitudes have m^2 / s^2 = pi / (4 - pi) = 3.660; the mean of n of them n times that. 256 tiles of 256 pixels,
-/// seed 2: the median's deviation is about 1.25 * 3.66 * sqrt(4 / 256) / 16, so 0.12 is 6.7 of them (the median's bias is part of
-/// it). The scene's own steps must not count.
+/// Rayleigh amplitudes have m^2 / s^2 = pi / (4 - pi) = 3.660; the mean of n of them n times that. 256 tiles of 256
+/// pixels, seed 2: the median's deviation is about 1.25 * 3.66 * sqrt(4 / 256) / 16, so 0.12 is 6.7 of them (the
+/// median's bias is part of it). The scene's own steps must not count.
 TEST(ImageScores, LooksAreThoseOfTheSpeckleAndNotOfTheScene) {
   Image2<float> clean(256, 256), one(256, 256), four(256, 256);
   const RandomKey key = RandomKey::from_seed(2);
-  const auto rayleigh = [&](std::uint64_t at) { return std::sqrt(-2.0 * std::log(uniform_at(key, at))) / std::sqrt(M_PI / 2); };
+  const auto rayleigh = [&](std::uint64_t at) {
+    return std::sqrt(-2.0 * std::log(uniform_at(key, at))) / std::sqrt(M_PI / 2);
+  };
   for (int r = 0; r < 256; ++r) {
     for (int c = 0; c < 256; ++c) {
       clean(r, c) = 25.0F + static_cast<float>((r + c) % 40);

@@ -28,8 +28,9 @@ TEST(Intervals, NothingGivesNothing) {
   EXPECT_TRUE(std::isnan(mean_estimate(one).low));
 }
 
-/// Of 1000 samples of 40 normal numbers (seed 5), the 95 % interval of their mean holds the true mean in 95 %: binomial,
-/// alpha 0.001 gives 950 +- 23; the bootstrap is known to be narrow, by 2 % at 40 values (Efron and Tibshirani 1993, ch. 14).
+/// Of 1000 samples of 40 normal numbers (seed 5), the 95 % interval of their mean holds the true mean in 95 %:
+/// binomial, alpha 0.001 gives 950 +- 23; the bootstrap is known to be narrow, by 2 % at 40 values (Efron and
+/// Tibshirani 1993, ch. 14).
 TEST(Intervals, TheTruthLiesInsideAsOftenAsTheySay) {
   const RandomKey key = RandomKey::from_seed(5);
   int student = 0, bootstrap = 0;

@@ -4,6 +4,9 @@
 
 #include <ctime>
 
+#include "ensonify/core/random.hpp"
+#include "ensonify/mapping/integrate_ping.hpp"
+#include "ensonify/mapping/threshold_sweep.hpp"
 #include "range_scans.hpp"
 
 namespace {
@@ -119,6 +122,62 @@ BENCHMARK(insert_room)
     ->ArgNames({"exact", "lazy"})
     ->Unit(benchmark::kMillisecond)
     ->UseRealTime();
+
+/// A ping of a wall with speckle: 512 beams over 60 deg, 512 bins to 10 m, 12 deg of elevation, looking askew.
+PosedImage wall_ping() {
+  PosedImage ping;
+  ping.geometry = {.range_min_m = 0.1, .range_max_m = 10, .range_bins = 512, .elevation_fov_rad = radians(12)};
+  for (int b = 0; b < 512; ++b) {
+    ping.geometry.beam_azimuth_rad.push_back(std::asin(std::sin(radians(30)) * (1 - 2.0 * b / 511)));
+  }
+  Image2<std::uint8_t> grey(512, 512);
+  const RandomKey key = RandomKey::from_seed(1);
+  for (int k = 0; k < 512; ++k) {
+    for (int b = 0; b < 512; ++b) {
+      const double wall_m = 7 / std::cos(ping.geometry.beam_azimuth_rad[static_cast<std::size_t>(b)]);
+      const double mean = std::abs(ping.geometry.bin_centre_m(k) - wall_m) < 0.2 ? 120 : 12;
+      const double u = uniform_at(key, static_cast<std::uint64_t>(512 * k + b));
+      grey(k, b) = static_cast<std::uint8_t>(std::min(255.0, mean * std::sqrt(-std::log(u))));
+    }
+  }
+  ping.grey = grey;
+  ping.T_world_sonar = pose_from_xyz_rpy({0, 0, -3}, 0.02, 0.1, 0.7);
+  return ping;
+}
+
+/// Pings into 5 cm cells; arguments: number of the model, threads.
+void integrate_pings(benchmark::State& state) {
+  const char* kinds[] = {"points", "arc", "arc_shadow", "carve"};
+  const InverseModel model = inverse_model_named(kinds[state.range(0)]);
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism,
+                                    static_cast<std::size_t>(state.range(1)));
+  const PosedImage ping = wall_ping();
+  LogOddsGrid grid({.origin_m = {-12, -12, -8}, .resolution_m = 0.05, .size = {480, 480, 160}});
+  MarkBox<Mark> scratch;
+  for (auto _ : state) integrate_ping(ping, 30, model, grid, scratch);
+  state.SetLabel(kinds[state.range(0)]);
+  state.counters["pings_per_s"] =
+      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+}
+BENCHMARK(integrate_pings)
+    ->ArgsProduct({{0, 1, 2, 3}, {1, 2}})
+    ->ArgNames({"model", "threads"})
+    ->Unit(benchmark::kMillisecond)
+    ->UseRealTime();
+
+/// 61 thresholds at once.
+void sweep_pings(benchmark::State& state) {
+  const tbb::global_control threads(tbb::global_control::max_allowed_parallelism, 2);
+  const PosedImage ping = wall_ping();
+  std::vector<double> thresholds(61);
+  for (std::size_t t = 0; t < thresholds.size(); ++t) thresholds[t] = static_cast<double>(t);
+  ThresholdSweep sweep({.origin_m = {-12, -12, -8}, .resolution_m = 0.05, .size = {480, 480, 160}}, thresholds, Arc{});
+  for (auto _ : state) sweep.add(ping);
+  state.counters["pings_per_s"] =
+      benchmark::Counter(static_cast<double>(state.iterations()), benchmark::Counter::kIsRate);
+  state.counters["MB"] = static_cast<double>(sweep.bytes()) / 1e6;
+}
+BENCHMARK(sweep_pings)->Unit(benchmark::kMillisecond)->UseRealTime();
 
 }  // namespace
 

@@ -96,6 +96,12 @@ void LogOddsGrid::apply(const MarkBox<Mark>& marks, const LogOddsStep& step, Upd
   });
 }
 
+void LogOddsGrid::set_block(std::size_t index, const Block& values) {
+  auto& block = block_.at(index);
+  block = std::make_unique<Block>(values);
+  for (MilliLogOdds& v : *block) v = std::clamp(v, limits_.lowest, limits_.highest);
+}
+
 std::size_t LogOddsGrid::bytes() const {
   std::size_t n = block_.size() * sizeof(block_[0]);
   for (const auto& block : block_) n += block ? sizeof(Block) : 0;

@@ -29,6 +29,11 @@ class LogOddsGrid {
   /// One ping: every marked cell takes one step. The result does not depend on the number of threads.
   void apply(const MarkBox<Mark>& marks, const LogOddsStep& step, UpdateLaw law = UpdateLaw::add);
 
+  /// Values of 8 x 8 x 8 cells, x fastest. Blocks are numbered like cells of a grid (marked_blocks.hpp).
+  using Block = std::array<MilliLogOdds, block_cells>;
+  /// The limits apply. Blocks may be set by several threads, each by one.
+  void set_block(std::size_t index, const Block& values);
+
   /// Bytes in use.
   std::size_t bytes() const;
   /// Bytes once every block of such a box is in use, and the marks of a ping that reaches all of it. Ask before making
@@ -36,9 +41,6 @@ class LogOddsGrid {
   static std::size_t bytes_at_worst(const GridFrame& frame);
 
  private:
-  /// x runs fastest.
-  using Block = std::array<MilliLogOdds, block_cells>;
-
   std::size_t block_of(const Cell& cell) const;
 
   GridFrame frame_;

@@ -126,7 +126,11 @@ BENCHMARK(insert_room)
 /// A ping of a wall with speckle: 512 beams over 60 deg, 512 bins to 10 m, 12 deg of elevation, looking askew.
 PosedImage wall_ping() {
   PosedImage ping;
-  ping.geometry = {.range_min_m = 0.1, .range_max_m = 10, .range_bins = 512, .elevation_fov_rad = radians(12)};
+  ping.geometry = {.range_min_m = 0.1,
+                   .range_max_m = 10,
+                   .range_bins = 512,
+                   .beam_azimuth_rad = {},
+                   .elevation_fov_rad = radians(12)};
   for (int b = 0; b < 512; ++b) {
     ping.geometry.beam_azimuth_rad.push_back(std::asin(std::sin(radians(30)) * (1 - 2.0 * b / 511)));
   }

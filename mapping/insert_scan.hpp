@@ -25,7 +25,7 @@ enum class LineRule : std::uint8_t {
 struct ScanOptions {
   LineRule rule = LineRule::exact_every_ray;
   double max_range_m = std::numeric_limits<double>::infinity();
-  LogOddsStep step;
+  LogOddsStep step = {};
 };
 
 /// Scratch memory of scans, to be used again.

@@ -14,7 +14,7 @@ namespace ensonify {
 /// cells that hold the centre of an echoing pixel.
 struct Points {
   static constexpr const char* kind = "points";
-  LogOddsStep step;
+  LogOddsStep step = {};
 };
 
 /// How models that know of the elevation arc see a pixel.
@@ -29,30 +29,30 @@ struct ArcShape {
 /// Every cell of the frustum takes its pixel: echo is occupied, none is free, in the shadow too.
 struct Arc {
   static constexpr const char* kind = "arc";
-  LogOddsStep step;
-  ArcShape shape;
+  LogOddsStep step = {};
+  ArcShape shape = {};
 };
 
 /// As `Arc`, but beyond the first return of its beam a cell without echo is left as it was.
 struct ArcShadow {
   static constexpr const char* kind = "arc_shadow";
-  LogOddsStep step;
-  ArcShape shape;
+  LogOddsStep step = {};
+  ArcShape shape = {};
 };
 
 /// The marks of `ArcShadow`, under the law once_freed_ever: occupied is what echoed and was never found free.
 struct Carve {
   static constexpr const char* kind = "carve";
-  LogOddsStep step;
-  ArcShape shape;
+  LogOddsStep step = {};
+  ArcShape shape = {};
 };
 
 /// Echoes at their true elevation, which only a simulator knows: the upper bound. Free are the lines to them, and the
 /// arcs that `ArcShadow` frees.
 struct Oracle {
   static constexpr const char* kind = "oracle";
-  LogOddsStep step;
-  ArcShape shape;
+  LogOddsStep step = {};
+  ArcShape shape = {};
 };
 
 using InverseModel = std::variant<Points, Arc, ArcShadow, Carve, Oracle>;

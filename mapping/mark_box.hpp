@@ -39,6 +39,14 @@ inline SweepMark mark_of<SweepMark>(int echo, int before) {
 inline bool outdoes(Mark a, Mark b) { return a > b; }
 inline bool outdoes(SweepMark a, SweepMark b) { return a.echo_plus_1 > b.echo_plus_1; }
 
+/// A mark of a cell in which an echo of class `echo` > 0 is known to lie: occupied as far as that, else as it was.
+inline Mark with_echo(Mark, int) { return Mark::occupied; }
+inline SweepMark with_echo(SweepMark m, int echo) {
+  constexpr std::uint8_t never = 255;
+  const auto reached = static_cast<std::uint8_t>(echo + 1);
+  return {std::max(m.echo_plus_1, reached), m == SweepMark{} ? never : std::max(m.before_plus_1, reached)};
+}
+
 /// The marks of one ping, a byte or two a cell of the box that it can reach. They are set once the ping is read
 /// completely, so that a cell is updated once a ping whatever the order of its pixels. A mark is forgotten with its
 /// ping: there is no stamp that could be mistaken for another ping's. Scratch memory, to be used again.

@@ -82,10 +82,14 @@ void require_valid(const PosedImage& ping, const InverseModel& model, const Grid
   if (!(g.elevation_fov_rad > 0 && g.elevation_fov_rad < std::numbers::pi)) {
     throw DataError(fmt::format("elevation field of view {} deg lies outside (0, 180)", degrees(g.elevation_fov_rad)));
   }
-  const std::vector<double> edges = g.beam_edges_rad();
-  for (std::size_t b = 0; b + 1 < edges.size() && g.beams() > 1; ++b) {
-    if (!(edges[b] > edges[b + 1])) throw DataError(fmt::format("azimuth of beam {} does not descend", b));
+  for (std::size_t b = 1; b < g.beam_azimuth_rad.size(); ++b) {
+    if (!(g.beam_azimuth_rad[b] < g.beam_azimuth_rad[b - 1])) {
+      throw DataError(
+          fmt::format("azimuth of beam {} does not descend from {} to {} deg; column 0 must be the port-most", b,
+                      degrees(g.beam_azimuth_rad[b - 1]), degrees(g.beam_azimuth_rad[b])));
+    }
   }
+  const std::vector<double> edges = g.beam_edges_rad();
   if (!(edges.front() <= std::numbers::pi && edges.back() >= -std::numbers::pi)) {
     throw DataError(
         fmt::format("beams from {} to {} deg reach beyond +-180 deg", degrees(edges.front()), degrees(edges.back())));

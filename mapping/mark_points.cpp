@@ -107,14 +107,17 @@ void mark_true_points(const PosedImage& ping, const ClassImage& classes, const G
       });
     }
   });
-  const Strongest<M> cells{marks.data()};
   parallel_for(ping.geometry.beams(), [&](int beam) {
     for (int k = 0; k < ping.geometry.range_bins; ++k) {
       const double elevation = static_cast<double>(ping.elevation_rad(k, beam));
       const int c = classes.class_of_pixel(k, beam);
-      if (!std::isfinite(elevation) || c <= classes.class_of_silence) continue;
+      if (!std::isfinite(elevation) || c == 0) continue;
       const Cell cell = cell_at(ping, frame, ray_of(ping, beam, elevation), ping.geometry.bin_centre_m(k));
-      if (layout.box.contains(cell)) cells.set(layout.offset(cell), mark_of<M>(c, c));
+      if (!layout.box.contains(cell)) continue;
+      const std::atomic_ref<M> mark(marks.data()[layout.offset(cell)]);
+      M before = mark.load(std::memory_order_relaxed);
+      while (!mark.compare_exchange_weak(before, with_echo(before, c), std::memory_order_relaxed)) {
+      }
     }
   });
 }

@@ -87,14 +87,14 @@ EvidenceImage<M> evidence_of(const ClassImage& classes, const SonarGeometry& geo
   const Classes echo = pooled(classes.class_of_pixel, geometry, 0.5 * footprint_m);
   const Classes before =
       shadow == Shadow::ignored ? echo : pooled(strongest_so_far(classes.class_of_pixel), geometry, 0.5 * footprint_m);
-  EvidenceImage<M> out{echo.columns(), std::vector<M>(echo.size() + 1)};
+  EvidenceImage<M> out(echo.size() + 1);
   for (std::size_t i = 0; i < echo.size(); ++i) {
-    out.mark[i] = mark_of<M>(echoes_count ? echo.pixels()[i] : classes.class_of_silence, before.pixels()[i]);
+    out[i] = mark_of<M>(echoes_count ? echo.pixels()[i] : classes.class_of_silence, before.pixels()[i]);
   }
   return out;
 }
 
-template EvidenceImage<Mark> evidence_of(const ClassImage&, const SonarGeometry&, double, Shadow, bool);
-template EvidenceImage<SweepMark> evidence_of(const ClassImage&, const SonarGeometry&, double, Shadow, bool);
+template EvidenceImage<Mark> evidence_of<Mark>(const ClassImage&, const SonarGeometry&, double, Shadow, bool);
+template EvidenceImage<SweepMark> evidence_of<SweepMark>(const ClassImage&, const SonarGeometry&, double, Shadow, bool);
 
 }  // namespace ensonify

@@ -50,7 +50,7 @@ const LogOddsStep& step_of(const InverseModel& model) {
 }
 
 UpdateLaw law_of(const InverseModel& model) {
-  return std::holds_alternative<Carve>(model) ? UpdateLaw::once_freed_ever : UpdateLaw::add;
+  return std::holds_alternative<Carve>(model) ? UpdateLaw::freed_for_good : UpdateLaw::add;
 }
 
 void require_valid(const InverseModel& model) {

@@ -40,7 +40,7 @@ struct ArcShadow {
   ArcShape shape = {};
 };
 
-/// The marks of `ArcShadow`, under the law once_freed_ever: occupied is what echoed and was never found free.
+/// The marks of `ArcShadow`, under the law freed_for_good: occupied is what echoed and was never found free.
 struct Carve {
   static constexpr const char* kind = "carve";
   LogOddsStep step = {};

@@ -29,8 +29,8 @@ struct LogOddsLimits {
 
 /// How looks of several pings become one value.
 enum class UpdateLaw : std::uint8_t {
-  add,             ///< the sum of all steps: Bayes' rule for independent looks (Moravec and Elfes 1985)
-  once_freed_ever  ///< a look that found the cell free outweighs every echo, before and after: space carving
+  add,            ///< the sum of all steps: Bayes' rule for independent looks (Moravec and Elfes 1985)
+  freed_for_good  ///< a look that found the cell free outweighs every echo, before and after: space carving
 };
 
 /// Throw ConfigError unless free < 0 < occupied; unless lowest < 0 < highest.

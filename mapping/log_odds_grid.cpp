@@ -27,7 +27,7 @@ void step_row(const Mark* marks, MilliLogOdds* value, const LogOddsStep& step, c
     const MilliLogOdds v = value[i];
     MilliLogOdds freed = v < may_free ? limits.lowest : v + step.free;
     MilliLogOdds occupied = v > may_occupy ? limits.highest : v + step.occupied;
-    if constexpr (law == UpdateLaw::once_freed_ever) {
+    if constexpr (law == UpdateLaw::freed_for_good) {
       freed = v > 0 ? std::max(step.free, limits.lowest) : freed;
       occupied = v < 0 ? v : occupied;
     }
@@ -91,7 +91,7 @@ void LogOddsGrid::apply(const MarkBox<Mark>& marks, const LogOddsStep& step, Upd
     if (law == UpdateLaw::add) {
       step_row<UpdateLaw::add>(mark, value, s, limits_);
     } else {
-      step_row<UpdateLaw::once_freed_ever>(mark, value, s, limits_);
+      step_row<UpdateLaw::freed_for_good>(mark, value, s, limits_);
     }
   });
 }

@@ -6,12 +6,13 @@
 
 #include "ensonify/mapping/log_odds.hpp"
 #include "ensonify/mapping/mark_box.hpp"
+#include "ensonify/mapping/marks.hpp"
 
 namespace ensonify {
 
 /// An occupancy map: log-odds of the cells of a box, in blocks of 8 x 8 x 8 that exist once something was seen in them.
-/// A map in two dimensions is a box one cell high: what lies above or below it is outside.
-/// A cell is unknown while its value is 0: never looked at, or looks that cancel, which say as little.
+/// A map in two dimensions is a box one cell high: what lies above or below it is outside (its blocks are 8 high
+/// still). A cell is unknown while its value is 0: never looked at, or looks that cancel, which say as little.
 class LogOddsGrid {
  public:
   /// Throws ConfigError for a frame without cells, with 2^33 or more, with a resolution or origin that is no number, or

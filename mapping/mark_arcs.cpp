@@ -70,7 +70,7 @@ void mark_arcs(const EvidenceImage<M>& evidence, const SonarGeometry& geometry, 
       .tan2_elevation = static_cast<float>(frustum.tan_elevation * frustum.tan_elevation),
       .lookup = &lookup,
       .beams = geometry.beams(),
-      .outside = static_cast<std::int32_t>(evidence.mark.size() - 1),
+      .outside = static_cast<std::int32_t>(evidence.size() - 1),
   };
   const StridedBox& layout = marks.layout();
   const auto [low, high] = layout.box;
@@ -88,7 +88,7 @@ void mark_arcs(const EvidenceImage<M>& evidence, const SonarGeometry& geometry, 
         for (int x = from; x < end; x += lanes, out += lanes) {
           pixels_of(to, (start + x * step).cast<float>(), step.cast<float>(), pixel);
           const int n = std::min(lanes, end - x);
-          for (int i = 0; i < n; ++i) out[i] = evidence.mark[static_cast<std::size_t>(pixel[i])];
+          for (int i = 0; i < n; ++i) out[i] = evidence[static_cast<std::size_t>(pixel[i])];
         }
       }
     }

@@ -2,6 +2,7 @@
 
 #include "ensonify/mapping/evidence_image.hpp"
 #include "ensonify/mapping/frustum_rows.hpp"
+#include "ensonify/mapping/mark_box.hpp"
 
 namespace ensonify {
 

@@ -1,6 +1,7 @@
 #include "ensonify/mapping/mark_points.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 
 #include "ensonify/core/parallel.hpp"

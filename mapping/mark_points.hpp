@@ -2,6 +2,7 @@
 
 #include "ensonify/core/posed_image.hpp"
 #include "ensonify/mapping/mark_box.hpp"
+#include "ensonify/mapping/marks.hpp"
 #include "ensonify/mapping/threshold_classes.hpp"
 
 namespace ensonify {

@@ -73,7 +73,7 @@ void ThresholdSweep::add(const PosedImage& ping) {
 MilliLogOdds ThresholdSweep::value_at(std::uint32_t occupied, std::uint32_t free) const {
   const LogOddsStep& step = step_of(model_);
   std::int64_t value = std::int64_t{step.occupied} * occupied;
-  if (law_of(model_) == UpdateLaw::once_freed_ever && free > 0) value = 0;
+  if (law_of(model_) == UpdateLaw::freed_for_good && free > 0) value = 0;
   value += std::int64_t{step.free} * free;
   const LogOddsLimits limits;
   return static_cast<MilliLogOdds>(std::clamp<std::int64_t>(value, limits.lowest, limits.highest));

@@ -76,12 +76,12 @@ TEST(LogOddsGrid, OnceFreedStaysFreeInAnyOrder) {
   for (int rotation = 0; rotation < 5; ++rotation) {
     LogOddsGrid grid = small_grid();
     for (int i = 0; i < 5; ++i) {
-      grid.apply(one_mark(cell, looks[(i + rotation) % 5]), step, UpdateLaw::once_freed_ever);
+      grid.apply(one_mark(cell, looks[(i + rotation) % 5]), step, UpdateLaw::freed_for_good);
     }
     EXPECT_EQ(grid.at(cell), 2 * step.free) << rotation;
   }
   LogOddsGrid echoes = small_grid();
-  for (int i = 0; i < 3; ++i) echoes.apply(one_mark(cell, Mark::occupied), step, UpdateLaw::once_freed_ever);
+  for (int i = 0; i < 3; ++i) echoes.apply(one_mark(cell, Mark::occupied), step, UpdateLaw::freed_for_good);
   EXPECT_EQ(echoes.at(cell), 3 * step.occupied);
 }
 

@@ -51,6 +51,29 @@ void parallel_lines(std::size_t count, const Line& line) {
   });
 }
 
+/// Fills the ends of the rays that can be used, and gives the box from their first to their last cells.
+CellBox find_ends(const RangeScan& scan, const Vec3& origin, const GridFrame& frame, double max_range_cells,
+                  ScanScratch& scratch) {
+  CellBox reach = {cell_of(origin), cell_of(origin)};
+  scratch.end_cell.clear();
+  scratch.is_hit.clear();
+  for (const Vec3& point : scan.points_m) {
+    const Vec3 p = in_cells(frame, point);
+    if (!p.allFinite()) continue;
+    const RayEnd end = end_of(origin, p, max_range_cells);
+    if (!can_be_named(end.p_cells)) continue;
+    const Cell cell = cell_of(end.p_cells);
+    for (std::size_t a = 0; a < 3; ++a) {
+      reach.low[a] = std::min(reach.low[a], cell[a]);
+      reach.high[a] = std::max(reach.high[a], cell[a]);
+    }
+    scratch.end_cell.push_back(cell);
+    scratch.is_hit.push_back(end.is_hit);
+  }
+  for (int& high : reach.high) ++high;
+  return reach;
+}
+
 /// One line for all rays with the same end cell. Ends outside the grid are not compared.
 void free_lines_between_cells(const Cell& origin, ScanScratch& scratch) {
   constexpr Mark seen{3};
@@ -97,34 +120,17 @@ std::size_t insert_scan(const RangeScan& scan, const ScanOptions& options, LogOd
   if (!(options.max_range_m > 0)) {
     throw ConfigError(fmt::format("max_range_m is {}; it must be above 0", options.max_range_m));
   }
+  require_valid(options.step);
   const double max_range_cells = options.max_range_m / frame.resolution_m;
 
-  const Cell origin_cell = cell_of(origin);
-  CellBox reach = {origin_cell, origin_cell};
-  scratch.end_cell.clear();
-  scratch.is_hit.clear();
-  for (const Vec3& point : scan.points_m) {
-    const Vec3 p = in_cells(frame, point);
-    if (!p.allFinite()) continue;
-    const RayEnd end = end_of(origin, p, max_range_cells);
-    if (!can_be_named(end.p_cells)) continue;
-    const Cell cell = cell_of(end.p_cells);
-    for (int a = 0; a < 3; ++a) {
-      reach.low[a] = std::min(reach.low[a], cell[a]);
-      reach.high[a] = std::max(reach.high[a], cell[a]);
-    }
-    scratch.end_cell.push_back(cell);
-    scratch.is_hit.push_back(end.is_hit);
-  }
+  const CellBox inside = intersection(find_ends(scan, origin, frame, max_range_cells, scratch), box_of(frame));
   const std::size_t used = scratch.end_cell.size();
-  for (int& high : reach.high) ++high;
-  const CellBox inside = intersection(reach, box_of(frame));
   if (used == 0 || inside.empty()) return used;
 
   scratch.marks.reset(inside);
   Mark* marks = scratch.marks.data();
   if (options.rule == LineRule::bresenham_once_an_end) {
-    free_lines_between_cells(origin_cell, scratch);
+    free_lines_between_cells(cell_of(origin), scratch);
   } else {
     parallel_lines(scan.points_m.size(), [&](std::size_t i) {
       const Vec3 p = in_cells(frame, scan.points_m[i]);

@@ -201,6 +201,7 @@ TEST(Scans, PointsThatAreNoNumbersAreLeftOutAndOriginsRefused) {
     EXPECT_THROW(insert_scan({Vec3(1e300, 0, 0), {}}, {.rule = rule}, grid), DataError);
     EXPECT_THROW(insert_scan(scan, {.rule = rule, .max_range_m = nan}, grid), ConfigError);
     EXPECT_THROW(insert_scan(scan, {.rule = rule, .max_range_m = 0}, grid), ConfigError);
+    EXPECT_THROW(insert_scan({}, {.rule = rule, .step = {.free = 1, .occupied = 1}}, grid), ConfigError);
   }
 }
 

@@ -106,6 +106,16 @@ FilterChain find_filter(const std::string& method_or_chain) {
   return {method_or_chain, {make_filter(method_or_chain)}};  // says which method is nearest
 }
 
+FilterChain chain_for_maps(FilterChain filter, bool post_process) {
+  auto& steps = filter.steps;
+  if (!steps.empty() && role_of(steps.back().method) == FilterRole::detects) steps.push_back({Mask{}});
+  if (post_process) {
+    steps.push_back({Unsharp{}});
+    steps.push_back({Equalize{}});
+  }
+  return filter;
+}
+
 FilterPreset load_filter_preset(const std::string& path_or_name) {
   Reader file = Reader::from_file(resolve_name("filters/presets", path_or_name));
   FilterPreset preset;

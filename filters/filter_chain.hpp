@@ -28,6 +28,10 @@ FilterChain load_filter_chain(const std::string& path_or_name);
 /// What a command line names: a method with its defaults, else a chain's file or bundled name. Throws ConfigError.
 FilterChain find_filter(const std::string& method_or_chain);
 
+/// The chain that Lin et al. 2023 put before their mapper: the filter (no steps: the raw image); where it ends in a
+/// mask, that mask applied to the raw image; and, where `post_process`, the unsharp filter and histogram equalisation.
+FilterChain chain_for_maps(FilterChain filter, bool post_process);
+
 /// Chosen parameters for methods (path or bundled name; the key `methods` holds a mapping a method).
 struct FilterPreset {
   std::string name, about;

@@ -57,7 +57,7 @@ void require_valid(const std::vector<double>& thresholds) {
   }
 }
 
-ClassImage classify(const GreyImage& grey, const std::vector<double>& thresholds) {
+ClassImage classify(const GreyPixels& grey, const std::vector<double>& thresholds) {
   require_valid(thresholds);
   return std::visit(
       [&](const auto& image) -> ClassImage {

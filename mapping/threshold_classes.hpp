@@ -20,6 +20,6 @@ struct ClassImage {
 void require_valid(const std::vector<double>& thresholds);
 
 /// Throws ConfigError for such thresholds, DataError for an empty image or a pixel that is no number.
-ClassImage classify(const GreyImage& grey, const std::vector<double>& thresholds);
+ClassImage classify(const GreyPixels& grey, const std::vector<double>& thresholds);
 
 }  // namespace ensonify

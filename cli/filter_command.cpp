@@ -1,4 +1,5 @@
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
@@ -14,6 +15,7 @@
 #include "ensonify/cli/progress.hpp"
 #include "ensonify/cli/signals.hpp"
 #include "ensonify/cli/streams.hpp"
+#include "ensonify/config/library.hpp"
 #include "ensonify/core/error.hpp"
 #include "ensonify/core/parallel.hpp"
 #include "ensonify/filters/filter_chain.hpp"
@@ -31,7 +33,7 @@ struct Arguments {
   std::vector<std::string> settings;
   std::string preset, format;
   int jobs = 0;
-  bool list = false;
+  bool list = false, markdown = false;
   std::string progress = "auto";
 };
 
@@ -56,6 +58,18 @@ void print_methods() {
     for (const ParameterInfo& p : method.parameters) {
       fmt::print("    {:<14}{:<16} {}{}; {}\n", p.name, p.otherwise, p.about, p.unit.empty() ? "" : " [" + p.unit + "]",
                  p.rule);
+    }
+  }
+  fmt::print("\nChains: {}\nPresets: {}\n", fmt::join(library_names("filters"), " "),
+             fmt::join(library_names("filters/presets"), " "));
+}
+
+void print_markdown() {
+  fmt::print("| method | parameter | default | unit | values | meaning |\n|---|---|---|---|---|---|\n");
+  for (const MethodInfo& method : filter_methods()) {
+    fmt::print("| **`{}`** | | | | | {} |\n", method.name, method.source);
+    for (const ParameterInfo& p : method.parameters) {
+      fmt::print("| | `{}` | {} | {} | {} | {} |\n", p.name, p.otherwise, p.unit, p.rule, p.about);
     }
   }
 }
@@ -129,7 +143,7 @@ void filter_folder(const FilterChain& chain, const Arguments& a) {
 }
 
 void run(const Arguments& a) {
-  if (a.list) return print_methods();
+  if (a.list) return a.markdown ? print_markdown() : print_methods();
   if (a.method.empty() || a.input.empty() || a.output.empty()) {
     throw ConfigError("METHOD, INPUT and OUTPUT are needed; ensonify filter --list shows the methods");
   }
@@ -158,7 +172,9 @@ void add_filter(CLI::App& app) {
   command->add_option("--preset", a->preset, "Parameters chosen for the method: paper, tuned, or a YAML file");
   command->add_option("--format", a->format, "Of a folder's outputs: png, npy or exr (default: as the input)")
       ->check(CLI::IsMember({"png", "npy", "exr"}));
-  command->add_flag("--list", a->list, "Every method and chain with its parameters, defaults, units and sources");
+  command->add_flag("--list", a->list,
+                    "Every method with its parameters, defaults, units and sources; the bundled chains and presets");
+  command->add_flag("--markdown", a->markdown, "With --list: as a table");
   command->add_option("--jobs", a->jobs, "Threads for a folder (default: all cores)")->check(CLI::Range(1, 1024));
   command->add_option("--progress", a->progress, "auto, json or none")->check(CLI::IsMember({"auto", "json", "none"}));
   command->footer(

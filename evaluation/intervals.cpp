@@ -10,11 +10,11 @@ namespace {
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-/// 97.5 % point of Student's t: Hill 1970 (CACM 396) is more than needed; this expansion (Abramowitz and Stegun 26.7.5)
-/// is right to 0.5 % from 3 degrees of freedom on, and the first two are tabulated.
+/// 97.5 % point of Student's t: tabulated up to 4 degrees of freedom, from there on Abramowitz and Stegun 26.7.5, right
+/// to 0.1 %.
 double student_975(int degrees) {
-  if (degrees == 1) return 12.7062;
-  if (degrees == 2) return 4.3027;
+  constexpr std::array table{12.7062, 4.3027, 3.1824, 2.7764};
+  if (degrees <= static_cast<int>(table.size())) return table[static_cast<std::size_t>(degrees) - 1];
   const double z = 1.959964, n = degrees;
   const double z3 = z * z * z, z5 = z3 * z * z, z7 = z5 * z * z;
   return z + (z3 + z) / (4 * n) + (5 * z5 + 16 * z3 + 3 * z) / (96 * n * n) +

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
@@ -27,14 +28,20 @@ void check_finite(const Image2<float>& image) {
 
 const float log_scale = 255.0F / std::log(256.0F);
 
+using Levels = Eigen::Map<Eigen::ArrayXf>;
+
+Levels levels_of(Image2<float>& image) { return {image.pixels().data(), static_cast<Eigen::Index>(image.size())}; }
+
 GreyImage to_log(const GreyImage& image) {
   GreyImage out{image.grey, GreyDepth::real};
-  for (float& x : out.grey.pixels()) x = log_scale * std::log1p(std::max(x, 0.0F));
+  Levels levels = levels_of(out.grey);
+  levels = log_scale * (levels.max(0.0F) + 1.0F).log();
   return out;
 }
 
 void from_log(Image2<float>& image) {
-  for (float& x : image.pixels()) x = std::expm1(x / log_scale);
+  Levels levels = levels_of(image);
+  levels = (levels / log_scale).exp() - 1.0F;
 }
 
 FilterStep read_step(Reader& reader, const std::string& method) {

@@ -53,7 +53,7 @@ constexpr FilterParameter<Method> window_parameter() {
 }
 template <typename Method>
 constexpr FilterParameter<Method> variant_parameter() {
-  return {"variant", &Method::variant, "formulas of the papers, or PyRadar's with its even window"};
+  return {"variant", &Method::variant, "the papers' formulas, or PyRadar's with its even window"};
 }
 
 }  // namespace ensonify

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <map>
 #include <numeric>
 #include <set>
 #include <string_view>
@@ -116,6 +117,19 @@ Split read_split(const std::string& name, Reader split) {
   return result;
 }
 
+/// A scene that splits use with one layout each would give its places one name.
+void tell_apart(std::vector<Split>& all) {
+  std::map<std::string, int> count;
+  for (const Split& split : all) {
+    for (const PlaceRef& place : split.places) ++count[place.name];
+  }
+  for (Split& split : all) {
+    for (PlaceRef& place : split.places) {
+      if (count[place.name] > 1) place.name = fmt::format("{}_layout{}", place.name, place.layout);
+    }
+  }
+}
+
 void refuse_shared_places(const Reader& splits, const std::vector<Split>& all) {
   std::set<std::pair<std::string, std::uint64_t>> seen;
   std::set<std::string> names;
@@ -169,6 +183,7 @@ Recipe load_recipe(const std::string& path_or_name) {
   }
   splits.finish();
   if (recipe.splits.empty()) splits.fail("", "needs at least one of train, val, test");
+  tell_apart(recipe.splits);
   refuse_shared_places(splits, recipe.splits);
   if (recipe.frames() > max_frames) splits.fail("", fmt::format("at most {} frames", max_frames));
   file.finish();

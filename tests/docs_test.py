@@ -60,6 +60,11 @@ class DocsTest(unittest.TestCase):
                                check=True).stdout
         self.assertIn(table, (ROOT / "docs/instruments.md").read_text())
 
+    def test_the_table_of_filters_is_made_from_their_registry(self):
+        table = subprocess.run([arguments.program, "filter", "--list", "--markdown"], capture_output=True, text=True,
+                               check=True).stdout
+        self.assertIn(table, (ROOT / "docs/filters.md").read_text())
+
     def test_every_command_in_the_documents_works(self):
         count = 0
         for document in documents():
@@ -98,11 +103,11 @@ class DocsTest(unittest.TestCase):
 
     def test_every_bundled_thing_and_every_option_is_named(self):
         together = "\n".join(d.read_text() for d in documents())
-        for library in ("scenes", "sensor_models", "noise", "generators"):
+        for library in ("scenes", "sensor_models", "noise", "filters", "filters/presets", "filters/tuning", "generators"):
             for file in (ROOT / library / "library").glob("*.yaml"):
                 self.assertIn(f"`{file.stem}`", together)
-        for command in ("generate", "ping", "stats", "voxelize"):
-            text = subprocess.run([arguments.program, command, "--help"], capture_output=True, text=True).stdout
+        for command in ("evaluate filters", "filter", "generate", "ping", "stats", "voxelize"):
+            text = subprocess.run([arguments.program, *command.split(), "--help"], capture_output=True, text=True).stdout
             for option in set(re.findall(r"^  (?:-h,)?(--[a-z-]+)", text, re.M)) - {"--help"}:
                 self.assertIn(option, together, command)
 

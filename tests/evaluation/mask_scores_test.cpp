@@ -37,8 +37,8 @@ RC_GTEST_PROP(MaskScores, CountsOfLevelsGiveEveryThresholdsMask, ()) {
   RC_ASSERT(counts.true_positive == expected.true_positive);
   RC_ASSERT(counts.false_positive == expected.false_positive);
   RC_ASSERT(counts.false_negative == expected.false_negative);
+  const double best = levels.at(levels.best_threshold()).iou();
   for (int other = 1; other < 256; ++other) {
-    const double best = levels.at(levels.best_threshold()).iou();
     RC_ASSERT(!(levels.at(other).iou() > best));
   }
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -43,14 +44,22 @@ Plot bars(const FilterReport& report, const char* title, const char* unit, Estim
     series.y_high.push_back((row.*estimate).high);
     plot.categories.push_back(label(row));
   }
+  double most = 0;
+  for (const auto& ends : {series.y, series.y_high}) {
+    for (const double end : ends) most = std::isfinite(end) ? std::max(most, end) : most;
+  }
+  plot.y_range = {{0.0, most > 0 ? 1.05 * most : 1.0}};
   plot.series = {std::move(series)};
   return plot;
 }
 
+/// What the curves show; all filters would hide each other.
+constexpr std::array of_the_paper{"raw", "lee_enhanced", "frost", "anisodiff", "wavelet"};
+
 Plot precision_over_recall(const FilterReport& report) {
   Plot plot = titled_plot("Mask for every threshold, all scenes", "recall", "precision");
   for (const FilterScores& row : report.rows) {
-    if (row.scene != "all" || row.filter == "truth_mask") continue;
+    if (row.scene != "all" || std::ranges::find(of_the_paper, row.filter) == of_the_paper.end()) continue;
     Series series{label(row), {}, {}};
     for (int t = 1; t < 256; ++t) {
       const MaskCounts counts = row.levels.at(t);

@@ -81,7 +81,8 @@ void put_plot(std::string& script, const Plot& plot, std::size_t at) {
                         quoted(plot.y_label));
   script += fmt::format("set xrange {}\nset yrange {}\n", range_of(plot.x_range), range_of(plot.y_range));
   script += plot.equal_scale ? "set size ratio -1\n" : "set size noratio\n";
-  script += plot.categories.empty() ? "set xtics auto norotate\n" : "set xtics rotate by -35 ()\n";
+  script += plot.categories.empty() ? "set xtics auto norotate\nset rmargin -1\n"
+                                    : "set xtics rotate by -35 ()\nset rmargin 10\n";
   for (std::size_t c = 0; c < plot.categories.size(); ++c) {
     script += fmt::format("set xtics add ({} {})\n", quoted(plot.categories[c]), c);
   }

@@ -107,6 +107,7 @@ void add_filters(CLI::App& evaluate) {
 void add_evaluate(CLI::App& app) {
   auto* command = app.add_subcommand("evaluate", "Score filters against a dataset's truth");
   command->require_subcommand(1);
+  command->footer("Example:\n  ensonify evaluate filters out/quick --out out/filters");
   add_filters(*command);
 }
 

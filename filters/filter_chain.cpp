@@ -28,20 +28,27 @@ void check_finite(const Image2<float>& image) {
 
 const float log_scale = 255.0F / std::log(256.0F);
 
-using Levels = Eigen::Map<Eigen::ArrayXf>;
-
-Levels levels_of(Image2<float>& image) { return {image.pixels().data(), static_cast<Eigen::Index>(image.size())}; }
+/// Calls change(levels) for every row, in memory of its own: where Eigen maps foreign memory, its alignment would
+/// decide which numbers go the scalar way, and so their last bits.
+template <typename Change>
+void change_rows(Image2<float>& image, const Change& change) {
+  Eigen::ArrayXf levels(image.columns());
+  for (int i = 0; i < image.rows(); ++i) {
+    Eigen::Map<Eigen::ArrayXf> row(image.row(i).data(), image.columns());
+    levels = row;
+    change(levels);
+    row = levels;
+  }
+}
 
 GreyImage to_log(const GreyImage& image) {
   GreyImage out{image.grey, GreyDepth::real};
-  Levels levels = levels_of(out.grey);
-  levels = log_scale * (levels.max(0.0F) + 1.0F).log();
+  change_rows(out.grey, [](Eigen::ArrayXf& levels) { levels = log_scale * (levels.max(0.0F) + 1.0F).log(); });
   return out;
 }
 
 void from_log(Image2<float>& image) {
-  Levels levels = levels_of(image);
-  levels = (levels / log_scale).exp() - 1.0F;
+  change_rows(image, [](Eigen::ArrayXf& levels) { levels = (levels / log_scale).exp() - 1.0F; });
 }
 
 FilterStep read_step(Reader& reader, const std::string& method) {

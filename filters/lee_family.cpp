@@ -72,19 +72,20 @@ Image2<float> apply(const Kuan& f, const GreyImage& image) {
 
 Image2<float> apply(const LeeEnhanced& f, const GreyImage& image) {
   if (f.variant == FilterVariant::pyradar) return pyradar_lee_enhanced(image.grey, f);
-  Row weight(image.grey.columns());
+  // Of its own memory: where Eigen maps foreign memory, its alignment would decide which numbers go the scalar way.
+  Eigen::ArrayXd weight(image.grey.columns());
   return over_rows(image.grey, f.window.radius(),
                    [&](int, const Row& mean, const Row& variation2, std::span<const float> in, std::span<float> out) {
                      // Held between cu and cmax the exponent gives the outer classes too: 1 at cu, 0 at cmax.
-                     for (std::size_t j = 0; j < weight.size(); ++j) {
-                       const double c = std::min(std::max(std::sqrt(variation2[j]), f.cu), f.cmax);
+                     for (Eigen::Index j = 0; j < weight.size(); ++j) {
+                       const double c =
+                           std::min(std::max(std::sqrt(variation2[static_cast<std::size_t>(j)]), f.cu), f.cmax);
                        weight[j] = -f.k * (c - f.cu) / std::max(f.cmax - c, 1e-12);
                        if (c == f.cmax) weight[j] = -1e3;
                      }
-                     Eigen::Map<Eigen::ArrayXd> w(weight.data(), static_cast<Eigen::Index>(weight.size()));
-                     w = w.exp();
+                     weight = weight.exp();
                      for (std::size_t j = 0; j < out.size(); ++j) {
-                       out[j] = static_cast<float>(in[j] + weight[j] * (mean[j] - in[j]));
+                       out[j] = static_cast<float>(in[j] + weight[static_cast<Eigen::Index>(j)] * (mean[j] - in[j]));
                      }
                    });
 }

@@ -72,8 +72,8 @@ class InstallTest(unittest.TestCase):
     def test_every_header_is_installed_and_no_test(self):
         installed = {str(f.relative_to(self.prefix / "include/ensonify"))
                      for f in (self.prefix / "include/ensonify").rglob("*") if f.is_file()}
-        rooms = ("core", "config", "scenes", "sensor_models", "sim", "noise", "output", "mapping",
-                 "generators")
+        rooms = ("core", "config", "scenes", "sensor_models", "sim", "noise", "filters", "output", "mapping",
+                 "evaluation", "generators")
         expected = {str(f.relative_to(arguments.source)) for room in rooms for f in (arguments.source / room).glob("*.hpp")}
         self.assertEqual(installed, expected)
 

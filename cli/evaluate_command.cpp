@@ -105,9 +105,10 @@ void add_filters(CLI::App& evaluate) {
 }  // namespace
 
 void add_evaluate(CLI::App& app) {
-  auto* command = app.add_subcommand("evaluate", "Score filters against a dataset's truth");
+  auto* command = app.add_subcommand("evaluate", "Score filters and maps against a dataset's truth");
   command->require_subcommand(1);
   add_filters(*command);
+  add_evaluate_map(*command);
 }
 
 }  // namespace ensonify::cli

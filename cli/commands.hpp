@@ -8,6 +8,7 @@ namespace ensonify::cli {
 void add_evaluate(CLI::App& app);
 void add_filter(CLI::App& app);
 void add_generate(CLI::App& app);
+void add_map(CLI::App& app);
 void add_ping(CLI::App& app);
 void add_scene(CLI::App& app);
 void add_sonar(CLI::App& app);
@@ -15,6 +16,7 @@ void add_stats(CLI::App& app);
 void add_verify(CLI::App& app);
 void add_voxelize(CLI::App& app);
 
+void add_evaluate_map(CLI::App& evaluate_command);
 void add_scene_show(CLI::App& scene_command);
 void add_scene_export(CLI::App& scene_command);
 void add_sonar_show(CLI::App& sonar_command);

@@ -105,10 +105,11 @@ void add_filters(CLI::App& evaluate) {
 }  // namespace
 
 void add_evaluate(CLI::App& app) {
-  auto* command = app.add_subcommand("evaluate", "Score filters against a dataset's truth");
+  auto* command = app.add_subcommand("evaluate", "Score filters and maps against a dataset's truth");
   command->require_subcommand(1);
   command->footer("Example:\n  ensonify evaluate filters out/quick --out out/filters");
   add_filters(*command);
+  add_evaluate_map(*command);
 }
 
 }  // namespace ensonify::cli

@@ -52,6 +52,7 @@ int run(int argc, char** argv) {
   cli::add_evaluate(app);
   cli::add_filter(app);
   cli::add_generate(app);
+  cli::add_map(app);
   cli::add_ping(app);
   cli::add_scene(app);
   cli::add_sonar(app);

@@ -13,4 +13,16 @@ struct LogOddsMap {
   std::vector<float> log_odds;
 };
 
+/// For writers of grids: positive is `surface`, all else `free`; observable where the value is not 0, so that unknown
+/// cells are those that nothing observed.
+inline OccupancyGrid occupancy_of(const LogOddsMap& map) {
+  OccupancyGrid grid{map.frame, std::vector<std::uint8_t>(map.log_odds.size()),
+                     std::vector<std::uint8_t>(map.log_odds.size())};
+  for (std::size_t i = 0; i < map.log_odds.size(); ++i) {
+    grid.occupancy[i] = static_cast<std::uint8_t>(map.log_odds[i] > 0 ? Occupancy::surface : Occupancy::free);
+    grid.observable[i] = map.log_odds[i] != 0;
+  }
+  return grid;
+}
+
 }  // namespace ensonify

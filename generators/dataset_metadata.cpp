@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <fstream>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "ensonify/core/error.hpp"
@@ -15,12 +16,15 @@ using nlohmann::json;
 constexpr std::uint64_t max_line_bytes = 1 << 20;
 
 double finite(const json& value, const char* key) {
-  const double number = value.get<double>();
+  // JSON has no NaN: writers put null.
+  const double number = value.is_null() ? std::numeric_limits<double>::quiet_NaN() : value.get<double>();
   if (!std::isfinite(number)) throw DataError(fmt::format("{} must be finite", key));
   return number;
 }
 
 Pose pose_of(const json& line, const char* key) {
+  if (!line.contains(key))
+    throw DataError(fmt::format("has no {}; every frame needs its pose, 4 x 4, row by row", key));
   const json& rows = line.at(key);
   Pose pose = Pose::Identity();
   for (int r = 0; r < 4; ++r) {

@@ -45,14 +45,4 @@ LogOddsGrid grid_of(const LogOddsMap& map, const LogOddsLimits& limits) {
   return grid;
 }
 
-OccupancyGrid occupancy_of(const LogOddsMap& map) {
-  OccupancyGrid grid{map.frame, std::vector<std::uint8_t>(map.log_odds.size()),
-                     std::vector<std::uint8_t>(map.log_odds.size())};
-  for (std::size_t i = 0; i < map.log_odds.size(); ++i) {
-    grid.occupancy[i] = static_cast<std::uint8_t>(map.log_odds[i] > 0 ? Occupancy::surface : Occupancy::free);
-    grid.observable[i] = map.log_odds[i] != 0;
-  }
-  return grid;
-}
-
 }  // namespace ensonify

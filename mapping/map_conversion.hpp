@@ -12,8 +12,4 @@ LogOddsMap dense_map(const LogOddsGrid& grid);
 /// number of values that does not fit it; DataError for a value that is no number.
 LogOddsGrid grid_of(const LogOddsMap& map, const LogOddsLimits& limits = {});
 
-/// For writers of grids: positive is `surface`, all else `free`; observable where the value is not 0, so that unknown
-/// cells are those that nothing observed.
-OccupancyGrid occupancy_of(const LogOddsMap& map);
-
 }  // namespace ensonify

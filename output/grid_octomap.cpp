@@ -42,14 +42,14 @@ std::array<int, 3> low_key(const GridFrame& frame) {
     const double cells = frame.origin_m[a] / frame.resolution_m;
     if (std::abs(cells - std::round(cells)) > 1e-3) {
       throw ConfigError(
-          fmt::format("grid origin {} m is not a multiple of its resolution {} m, as OctoMap (.bt) needs; "
+          fmt::format("grid origin {} m is not a multiple of its resolution {} m, as OctoMap (.bt, .ot) needs; "
                       "voxelise it anew or write .npz",
                       frame.origin_m[a], frame.resolution_m));
     }
     const double first = std::round(cells) + (1 << (tree_depth - 1));
     if (first < 0 || first + frame.size[a] > (1 << tree_depth)) {
       throw ConfigError(
-          fmt::format("grid reaches beyond the {} cells around 0 that OctoMap (.bt) can address; use a "
+          fmt::format("grid reaches beyond the {} cells around 0 that OctoMap (.bt, .ot) can address; use a "
                       "coarser resolution or move the scene towards the origin",
                       1 << tree_depth));
     }
@@ -114,20 +114,59 @@ void fill(Tree& tree, octomap::OcTreeNode* node, const std::vector<Level>& level
   }
 }
 
+/// As fill(), but down to single cells, which hold their log-odds; equal ones are pruned on the way up.
+void fill_values(Tree& tree, octomap::OcTreeNode* node, const std::vector<Level>& levels, int level,
+                 const std::array<int, 3>& block, const LogOddsMap& map) {
+  for (unsigned i = 0; i < 8; ++i) {
+    const std::array<int, 3> c{2 * block[0] + static_cast<int>(i & 1), 2 * block[1] + static_cast<int>((i >> 1) & 1),
+                               2 * block[2] + static_cast<int>(i >> 2)};
+    if (levels[level - 1].at(c[0], c[1], c[2]) == unknown) continue;
+    octomap::OcTreeNode* child = tree.createNodeChild(node, i);
+    if (level == 1) {
+      const auto& low = levels[0].low;
+      child->setLogOdds(map.log_odds[map.frame.index(c[0] - low[0], c[1] - low[1], c[2] - low[2])]);
+    } else {
+      fill_values(tree, child, levels, level - 1, c, map);
+    }
+  }
+  if (!tree.pruneNode(node)) node->updateOccupancyChildren();
+}
+
+std::vector<Level> levels_of(Level finest) {
+  std::vector<Level> levels = {std::move(finest)};
+  while (levels.size() <= tree_depth) levels.push_back(coarser(levels.back()));
+  return levels;
+}
+
+/// The header that OcTree's own writers put; they print to standard error.
+std::string header(const Tree& tree, const char* first_line) {
+  return fmt::format(
+      "{}\n# (feel free to add / change comments, but leave the first line as it is!)\n#\nid {}\nsize {}\nres {}\n"
+      "data\n",
+      first_line, tree.getTreeType(), tree.size(), tree.getResolution());
+}
+
 }  // namespace
 
 void write_grid_octomap(const OccupancyGrid& grid, const std::filesystem::path& path, bool unobserved_is_unknown) {
-  std::vector<Level> levels = {finest_level(grid, unobserved_is_unknown)};
-  while (levels.size() <= tree_depth) levels.push_back(coarser(levels.back()));
-
+  const std::vector<Level> levels = levels_of(finest_level(grid, unobserved_is_unknown));
   Tree tree(grid.frame.resolution_m);
   if (levels.back().at(0, 0, 0) != unknown) fill(tree, tree.make_root(), levels, tree_depth, 0, 0, 0);
-  // As OcTree::writeBinary writes it; the library's own function prints to standard error.
   std::ostringstream bytes;
-  bytes
-      << "# Octomap OcTree binary file\n# (feel free to add / change comments, but leave the first line as it is!)\n#\n"
-      << "id " << tree.getTreeType() << "\nsize " << tree.size() << "\nres " << tree.getResolution() << "\ndata\n";
+  bytes << header(tree, "# Octomap OcTree binary file");
   if (tree.size() > 0) tree.writeBinaryData(bytes);
+  write_file(path, bytes.view());
+}
+
+void write_map_octomap(const LogOddsMap& map, const std::filesystem::path& path) {
+  const std::vector<Level> levels = levels_of(finest_level(occupancy_of(map), true));
+  Tree tree(map.frame.resolution_m);
+  if (levels.back().at(0, 0, 0) != unknown) {
+    fill_values(tree, tree.make_root(), levels, tree_depth, {0, 0, 0}, map);
+  }
+  std::ostringstream bytes;
+  bytes << header(tree, "# Octomap OcTree file");
+  if (tree.size() > 0) tree.writeData(bytes);
   write_file(path, bytes.view());
 }
 

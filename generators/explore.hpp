@@ -83,8 +83,8 @@ struct ExploreSettings {
   NoiseProfile noise;
   FilterChain filter;
   InverseModel model;
-  LogOddsLimits limits;  ///< of the map's cells
-  double threshold = 0;  ///< grey levels
+  LogOddsLimits limits{-4000, 4000};  ///< of the map's cells: what was wrong for long can be right soon
+  double threshold = 0;               ///< grey levels
   int steps = 0;
   std::optional<Drift> drift;
 };

@@ -130,7 +130,10 @@ std::string steps_csv(const ExploreRun& run) {
   for (const ExploreStep& step : run.steps) {
     const std::vector<Field> fields = fields_of(step);
     if (text.empty()) {
-      for (const auto& [name, value] : fields) text += (text.empty() ? "" : ",") + name;
+      for (const auto& [name, value] : fields) {
+        if (!text.empty()) text += ',';
+        text += name;
+      }
       text += '\n';
     }
     for (std::size_t i = 0; i < fields.size(); ++i) text += (i == 0 ? "" : ",") + number(fields[i].second);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "ensonify/core/parallel.hpp"
@@ -10,7 +11,7 @@ namespace ensonify {
 namespace {
 
 constexpr int headings = 120;
-constexpr int most_steps_to_goal = 80;
+constexpr int most_steps_to_goal = 200;
 constexpr double worth_left_share = 0.4;  ///< of a goal's worth, below which another is looked for
 constexpr double arrived_rad = radians(2);
 
@@ -40,15 +41,6 @@ void mark_way(const Slice& slice, const PlanarPose& from, const PlanarPose& to, 
     const int iy = slice.iy_of(at.y_m);
     if (slice.contains(ix, iy)) memory.trail[slice.index(ix, iy)] = 1;
   }
-}
-
-ColumnWorth worth_of(const Slice& slice, const ColumnMask& interest, const std::vector<std::uint8_t>& looks) {
-  ColumnWorth worth(slice.columns.size());
-  for (std::size_t i = 0; i < worth.size(); ++i) {
-    const bool counts = slice.columns[i] == ColumnState::unknown && interest[i] != 0;
-    worth[i] = counts ? std::exp2(-static_cast<float>(looks[i])) : 0.0F;
-  }
-  return worth;
 }
 
 struct Choice {
@@ -96,12 +88,16 @@ std::optional<PlannerMemory::Goal> choose_goal(const PlannerSettings& settings, 
   return best->value > 0 ? std::optional(best->goal) : std::nullopt;
 }
 
-bool still_good(const PlannerSettings& settings, const Slice& slice, const ColumnWorth& worth, const Ways& ways,
-                const PlanarPose& at, const PlannerMemory::Goal& goal) {
-  if (!ways.reaches(goal.column) || goal.steps >= most_steps_to_goal) return false;
+/// The view from there was taken, or could not be.
+bool is_over(const Slice& slice, const PlanarPose& at, const PlannerMemory::Goal& goal) {
   const bool there = std::hypot(goal.pose.x_m - at.x_m, goal.pose.y_m - at.y_m) < 0.5 * slice.frame.resolution_m &&
                      std::abs(turn_between(at.yaw_rad, goal.pose.yaw_rad)) < arrived_rad;
-  if (there) return false;
+  return there || goal.steps >= most_steps_to_goal;
+}
+
+bool still_good(const PlannerSettings& settings, const Slice& slice, const ColumnWorth& worth, const Ways& ways,
+                const PlannerMemory::Goal& goal) {
+  if (!ways.reaches(goal.column)) return false;
   const std::vector<double> bearings =
       worth_by_bearing(slice, worth, settings.view, goal.pose.x_m, goal.pose.y_m, headings);
   double now = 0;
@@ -118,7 +114,8 @@ bool still_good(const PlannerSettings& settings, const Slice& slice, const Colum
 
 PlannerMemory memory_at(const Slice& slice, const PlanarPose& start, double known_free_m) {
   PlannerMemory memory;
-  memory.looks.assign(slice.columns.size(), 0);
+  memory.looks = {std::vector<std::uint8_t>(slice.columns.size(), 0),
+                  std::vector<float>(slice.columns.size(), std::numeric_limits<float>::infinity())};
   memory.body.assign(slice.columns.size(), 0);
   memory.trail.assign(slice.columns.size(), 0);
   mark_disc(slice, start, known_free_m, memory.body);
@@ -134,7 +131,12 @@ std::optional<PlanarPose> plan_step(const PlannerSettings& settings, const Slice
     if (memory.body[i] != 0) slice.columns[i] = ColumnState::free;
   }
   count_looks(slice, settings.view, at, memory.looks);
-  const ColumnWorth worth = worth_of(slice, settings.interest, memory.looks);
+  ColumnWorth worth = worth_of(slice, settings.interest, memory.looks, settings.resolved_m);
+  if (memory.goal && is_over(slice, at, *memory.goal)) {
+    count_in_vain(slice, worth, settings.view, memory.goal->pose, headings, memory.looks);
+    worth = worth_of(slice, settings.interest, memory.looks, settings.resolved_m);
+    memory.goal.reset();
+  }
 
   ColumnMask allowed = columns_with_room(slice, settings.clearance_m);
   for (std::size_t i = 0; i < allowed.size(); ++i) {
@@ -145,7 +147,7 @@ std::optional<PlanarPose> plan_step(const PlannerSettings& settings, const Slice
   if (!slice.contains(ix, iy)) return std::nullopt;
   const std::size_t here = slice.index(ix, iy);
   const Ways ways = shortest_ways(slice, allowed, ix, iy);
-  if (!memory.goal || !still_good(settings, slice, worth, ways, at, *memory.goal)) {
+  if (!memory.goal || !still_good(settings, slice, worth, ways, *memory.goal)) {
     memory.goal = choose_goal(settings, slice, worth, ways, at, here);
   }
   if (!memory.goal) return std::nullopt;

@@ -17,8 +17,9 @@ struct PlannerSettings {
   ColumnMask area;           ///< where its axis may be
   ColumnMask interest;       ///< columns worth knowing
   double least_worth_m2 = 0.05;
+  double resolved_m = 2.5;    ///< occupied columns that were seen from so near need no closer look
   double pause_s = 2;         ///< added to the time of a way, so that small gains nearby do not always win
-  double spacing_m = 0.4;     ///< of the places that are compared
+  double spacing_m = 0.6;     ///< of the places that are compared
   double look_ahead_m = 3;    ///< along the way
   double turn_early_m = 1.5;  ///< of way left: from here on it turns to the heading wanted there
 };
@@ -31,9 +32,9 @@ struct PlannerMemory {
     double worth_m2 = 0;
     int steps = 0;
   };
-  std::vector<std::uint8_t> looks;  ///< a column: pings that should have told of it and did not; each halves its worth
-  ColumnMask body;                  ///< where the vehicle has been: free, as far as it knows
-  ColumnMask trail;                 ///< where its axis has been: it may always go back
+  LookMemory looks;
+  ColumnMask body;   ///< where the vehicle has been: free, as far as it knows
+  ColumnMask trail;  ///< where its axis has been: it may always go back
   std::optional<PlanarPose> last;
   std::optional<Goal> goal;
 };

@@ -60,10 +60,10 @@ Twist parse_twist(const std::string& text) {
   constexpr double fastest = 180.0;
   const std::vector<double> v = six_numbers(text, fastest);
   if (v.empty()) {
-    throw ConfigError(
-        fmt::format("--velocity \"{}\": must be six numbers, \"vx vy vz wx wy wz\" in the sonar's frame, m/s and deg/s, "
-                    "none beyond {}",
-                    text, fastest));
+    throw ConfigError(fmt::format(
+        "--velocity \"{}\": must be six numbers, \"vx vy vz wx wy wz\" in the sonar's frame, m/s and deg/s, "
+        "none beyond {}",
+        text, fastest));
   }
   return {{v[0], v[1], v[2]}, {radians(v[3]), radians(v[4]), radians(v[5])}};
 }

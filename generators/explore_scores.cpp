@@ -60,13 +60,14 @@ ReachableSlice reachable_slice(const Slice& truth, const ColumnMask& axis_area, 
                                double radius_m, double sonar_range_m) {
   const ColumnMask places = places_of_axis(truth, axis_area, start, radius_m);
   ReachableSlice reachable{ColumnMask(truth.columns.size()), occupied_in_sight(truth, places, sonar_range_m)};
+  constexpr double rounding_m = 1e-9;  // three columns of 0.1 m are 0.30000000000000004 m
   const int reach = static_cast<int>(std::ceil(radius_m / truth.frame.resolution_m));
   for (int iy = 0; iy < truth.frame.size[1]; ++iy) {
     for (int ix = 0; ix < truth.frame.size[0]; ++ix) {
       if (places[truth.index(ix, iy)] == 0) continue;
       for (int dy = -reach; dy <= reach; ++dy) {
         for (int dx = -reach; dx <= reach; ++dx) {
-          const bool within = std::hypot(dx, dy) * truth.frame.resolution_m <= radius_m;
+          const bool within = std::hypot(dx, dy) * truth.frame.resolution_m <= radius_m + rounding_m;
           if (within && truth.contains(ix + dx, iy + dy)) reachable.free[truth.index(ix + dx, iy + dy)] = 1;
         }
       }

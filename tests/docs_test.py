@@ -101,7 +101,7 @@ class DocsTest(unittest.TestCase):
         for library in ("scenes", "sensor_models", "noise", "generators"):
             for file in (ROOT / library / "library").glob("*.yaml"):
                 self.assertIn(f"`{file.stem}`", together)
-        for command in ("generate", "ping", "stats", "voxelize"):
+        for command in ("explore", "generate", "ping", "stats", "voxelize"):
             text = subprocess.run([arguments.program, command, "--help"], capture_output=True, text=True).stdout
             for option in set(re.findall(r"^  (?:-h,)?(--[a-z-]+)", text, re.M)) - {"--help"}:
                 self.assertIn(option, together, command)

@@ -27,7 +27,7 @@ for line in sys.stdin:
 
 
 def steps_of(folder):
-    return list(csv.DictReader((folder / "steps.csv").open()))
+    return list(csv.DictReader((folder / "steps.csv").read_text().splitlines()))
 
 
 class ExploreTest(ProgramTest):
@@ -101,7 +101,7 @@ class ExploreTest(ProgramTest):
     def test_what_does_not_fit_is_said_before_the_start(self):
         for words, fragment in ((("--start", "1 2 3"), "--start"), (("--start", "0 0 -3.5 0 0 0"), "--start"),
                                 (("--start", "50 0 -2 0 0 0"), "navigable"), (("--depth", "40"), "--depth"),
-                                (("--model", "oracle"), "--model"), (("--known-free", "4"), "--known-free"),
+                                (("--model", "oracle"), "--model"), (("--known-free", "9"), "--known-free"),
                                 (("--filter", "nosuch"), "nosuch"), (("--steps", "0"), "--steps")):
             self.refuse(2, [fragment], "explore", *RUN, "--out", "wrong", *words)
             self.assertFalse((self.folder / "wrong").exists(), words)

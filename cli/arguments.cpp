@@ -44,14 +44,14 @@ std::vector<double> six_numbers(const std::string& text, double largest) {
 
 }  // namespace
 
-Pose parse_pose(const std::string& text) {
+Pose parse_pose(const std::string& text, const char* option) {
   constexpr double far_off = 1e5;  // single precision ends to tell millimetres apart long before
   const std::vector<double> v = six_numbers(text, far_off);
   if (v.empty()) {
     throw ConfigError(
-        fmt::format("--pose \"{}\": must be six numbers, \"x y z roll pitch yaw\", metres and degrees "
+        fmt::format("{} \"{}\": must be six numbers, \"x y z roll pitch yaw\", metres and degrees "
                     "(z up, 0 at the water surface; positive pitch is nose down), none beyond 100000",
-                    text));
+                    option, text));
   }
   return pose_from_xyz_rpy({v[0], v[1], v[2]}, radians(v[3]), radians(v[4]), radians(v[5]));
 }
@@ -60,10 +60,10 @@ Twist parse_twist(const std::string& text) {
   constexpr double fastest = 180.0;
   const std::vector<double> v = six_numbers(text, fastest);
   if (v.empty()) {
-    throw ConfigError(
-        fmt::format("--velocity \"{}\": must be six numbers, \"vx vy vz wx wy wz\" in the sonar's frame, m/s and deg/s, "
-                    "none beyond {}",
-                    text, fastest));
+    throw ConfigError(fmt::format(
+        "--velocity \"{}\": must be six numbers, \"vx vy vz wx wy wz\" in the sonar's frame, m/s and deg/s, "
+        "none beyond {}",
+        text, fastest));
   }
   return {{v[0], v[1], v[2]}, {radians(v[3]), radians(v[4]), radians(v[5])}};
 }

@@ -17,8 +17,8 @@ CLI::Validator above_zero();
 /// A path that is not empty.
 CLI::Validator some_path();
 
-/// "x y z roll pitch yaw", metres and degrees, blanks or commas between. Throws ConfigError.
-Pose parse_pose(const std::string& text);
+/// "x y z roll pitch yaw", metres and degrees, blanks or commas between. Throws ConfigError naming `option`.
+Pose parse_pose(const std::string& text, const char* option = "--pose");
 
 /// "vx vy vz wx wy wz" in the sonar's frame, m/s and deg/s. Throws ConfigError.
 Twist parse_twist(const std::string& text);

@@ -6,6 +6,7 @@ namespace ensonify::cli {
 
 /// Each adds one subcommand; its callback does the work and throws `Error`, or `ExitCode` to end with another code.
 void add_evaluate(CLI::App& app);
+void add_explore(CLI::App& app);
 void add_filter(CLI::App& app);
 void add_generate(CLI::App& app);
 void add_map(CLI::App& app);

@@ -50,6 +50,7 @@ int run(int argc, char** argv) {
       "Example:\n  ensonify ping test_tank --sonar oculus_m1200d_hf --pose \"1.0 0 -1.5 0 10 0\" --out out/ping\n\n"
       "Exit codes: 0 done, 1 the work failed (data, disk), 2 wrong usage or configuration, 130/143 stopped.");
   cli::add_evaluate(app);
+  cli::add_explore(app);
   cli::add_filter(app);
   cli::add_generate(app);
   cli::add_map(app);

@@ -106,7 +106,7 @@ class DocsTest(unittest.TestCase):
         for library in ("scenes", "sensor_models", "noise", "filters", "filters/presets", "filters/tuning", "generators"):
             for file in (ROOT / library / "library").glob("*.yaml"):
                 self.assertIn(f"`{file.stem}`", together)
-        for command in ("evaluate filters", "filter", "generate", "ping", "stats", "voxelize"):
+        for command in ("evaluate filters", "evaluate map", "explore", "filter", "generate", "map", "ping", "stats", "voxelize"):
             text = subprocess.run([arguments.program, *command.split(), "--help"], capture_output=True, text=True).stdout
             for option in set(re.findall(r"^  (?:-h,)?(--[a-z-]+)", text, re.M)) - {"--help"}:
                 self.assertIn(option, together, command)

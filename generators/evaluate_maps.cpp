@@ -69,6 +69,13 @@ JudgedPlace judged_place(const Dataset& dataset, const std::string& place, const
   return judged;
 }
 
+/// Curves are told apart, and pooled, by their names.
+void require_distinct(std::vector<std::string> names, const char* what) {
+  std::ranges::sort(names);
+  const auto twice = std::ranges::adjacent_find(names);
+  if (twice != names.end()) throw ConfigError(fmt::format("{} '{}' is there twice; name each once", what, *twice));
+}
+
 ContactTile tile_of(const std::array<Image2<std::uint8_t>, 2>& seen, std::string caption) {
   constexpr int wanted = 260;
   const int side = std::max({1, seen[0].rows(), seen[0].columns()});
@@ -115,6 +122,10 @@ MapEvaluationResult evaluate_maps(const Dataset& dataset, const MapEvaluation& w
   if (what.filters.empty() || what.poses.empty() || what.tolerances.empty()) {
     throw ConfigError("maps are evaluated for at least one filter, one kind of poses and one tolerance");
   }
+  std::vector<std::string> filters;
+  for (const MapFilter& filter : what.filters) filters.push_back(filter.name);
+  require_distinct(filters, "filter");
+  require_distinct(what.models, "model");
   MapEvaluationResult result;
   MapReport& report = result.report;
   report = {dataset.name, dataset.root_hash, what.split, {}, what.tolerances, what.fprs, {}};

@@ -135,6 +135,8 @@ class MapTest(ProgramTest):
         self.refuse(2, ["GiB", "--resolution"], *here, "map.npz", "--resolution", "0.00001")
         self.refuse(2, ["'beam' is unknown", "points, arc"], *here, "map.npz", "--model", "beam")
         self.refuse(2, ["lee_enhanced"], *here, "map.npz", "--filter", "lee_enhance")
+        self.refuse(2, ["filter 'raw' is there twice"], "evaluate", "map", "set", "--out", "s", "--filter", "raw",
+                    "--filter", "none")
         self.refuse(2, ["slice-z"], *here, "map.npz", "--slice-z", "-1")
         self.refuse(2, ["slice at z = 7"], *here, "map.pgm", "--slice-z", "7", "--max-frames", "1")
         self.refuse(1, ["no dataset.json"], "map", ".", "--out", "map.npz")

@@ -136,7 +136,10 @@ std::string steps_csv(const ExploreRun& run) {
       }
       text += '\n';
     }
-    for (std::size_t i = 0; i < fields.size(); ++i) text += (i == 0 ? "" : ",") + number(fields[i].second);
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (i > 0) text += ',';
+      text += number(fields[i].second);
+    }
     text += '\n';
   }
   return text;

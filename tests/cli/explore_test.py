@@ -4,7 +4,6 @@
 import csv
 import json
 import math
-import os
 import pathlib
 import signal
 import time
@@ -58,7 +57,8 @@ class ExploreTest(ProgramTest):
         self.assertAlmostEqual(summary["coverage"], float(rows[-1]["coverage"]), places=5)
         self.assertGreater(float(rows[-1]["coverage"]), float(rows[0]["coverage"]))
         for a, b in zip(rows, rows[1:]):
-            self.assertLessEqual(math.hypot(float(b["x_m"]) - float(a["x_m"]), float(b["y_m"]) - float(a["y_m"])), 0.2501)
+            way = math.hypot(float(b["x_m"]) - float(a["x_m"]), float(b["y_m"]) - float(a["y_m"]))
+            self.assertLessEqual(way, 0.2501)
             turn = (float(b["yaw_deg"]) - float(a["yaw_deg"]) + 180) % 360 - 180
             self.assertLessEqual(abs(turn), 15.001)
         log_odds = numpy.load(out / "map.npz")["log_odds"]
@@ -123,7 +123,8 @@ class ExploreTest(ProgramTest):
         self.assertFalse((out / "plugin").exists(), "what the plug-in was shown is gone")
 
     def test_a_plugin_is_told_all_and_kept_within_the_limits(self):
-        body = ("open('seen.json', 'w').write(json.dumps([hello, step, sorted(os.listdir(os.path.dirname(step['raw'])))]))\n"
+        body = ("shown = sorted(os.listdir(os.path.dirname(step['raw'])))\n"
+                "    open('seen.json', 'w').write(json.dumps([hello, step, shown]))\n"
                 "    answer = {'pose': [100, 0, 0, 0, 0, 45]}")
         _, out = self.explore("far", "--steps", "3", *self.plugin(body))
         rows = steps_of(out)
@@ -138,7 +139,8 @@ class ExploreTest(ProgramTest):
         self.assertEqual(json.loads((out / "summary.json").read_text())["end"], "plugin_done")
         body = ("import numpy\n"
                 "    z = numpy.load(step['map'])\n"
-                "    numpy.savez('mine.npz', log_odds=-numpy.ones_like(z['log_odds']), origin=z['origin'], resolution=z['resolution'])\n"
+                "    free = -numpy.ones_like(z['log_odds'])\n"
+                "    numpy.savez('mine.npz', log_odds=free, origin=z['origin'], resolution=z['resolution'])\n"
                 "    answer = {'map': 'mine.npz', 'done': True}")
         _, out = self.explore("map", "--steps", "5", *self.plugin(body))
         last = json.loads((out / "summary.json").read_text())
@@ -180,7 +182,8 @@ class ExploreTest(ProgramTest):
         self.assertEqual(running.returncode, 130)
         self.assertFalse((self.folder / "stopped").exists())
         pid = (self.folder / "pid").read_text()
-        self.assertFalse(os.path.exists(f"/proc/{pid}") and "Z (zombie)" not in pathlib.Path(f"/proc/{pid}/status").read_text())
+        status = pathlib.Path(f"/proc/{pid}/status")
+        self.assertTrue(not status.exists() or "Z (zombie)" in status.read_text())
         self.assertEqual(leftovers(self.folder), [])
 
 

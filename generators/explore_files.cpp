@@ -10,6 +10,7 @@
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/mapping/map_conversion.hpp"
+#include "ensonify/output/map_files.hpp"
 #include "ensonify/output/npz.hpp"
 
 namespace ensonify {
@@ -46,12 +47,6 @@ std::string number(double value) {
 }
 
 nlohmann::json or_null(double value) { return std::isnan(value) ? nlohmann::json() : nlohmann::json(value); }
-
-NpyArray array_of(const char* descr, std::vector<std::size_t> shape, const void* data, std::size_t bytes) {
-  NpyArray array{descr, std::move(shape), std::string(bytes, '\0')};
-  std::memcpy(array.bytes.data(), data, bytes);
-  return array;
-}
 
 std::size_t cells_of(const NpyArray& array) {
   std::size_t cells = 1;
@@ -206,16 +201,7 @@ nlohmann::json summary_of(const ExploreRun& run, const ExploreSite& site, const 
 }
 
 void write_explored_map(const LogOddsGrid& grid, const std::filesystem::path& path) {
-  const LogOddsMap map = dense_map(grid);
-  const std::vector<std::size_t> shape{static_cast<std::size_t>(map.frame.size[2]),
-                                       static_cast<std::size_t>(map.frame.size[1]),
-                                       static_cast<std::size_t>(map.frame.size[0])};
-  write_npz(path, {{"log_odds", array_of("<f4", shape, map.log_odds.data(), map.log_odds.size() * sizeof(float))},
-                   {"origin", array_of("<f8", {3}, map.frame.origin_m.data(), 3 * sizeof(double))},
-                   {"resolution", array_of("<f8", {}, &map.frame.resolution_m, sizeof(double))},
-                   {"axis_order", npy_text("z,y,x")},
-                   {"frame", npy_text("world ENU, metres, z up; origin is the minimum corner of cell [0,0,0]")},
-                   {"sign", npy_text("natural log-odds, positive = occupied, 0 = unknown")}});
+  write_map(dense_map(grid), path);
 }
 
 Slice read_guest_map(const std::filesystem::path& path, const Slice& like, const GridFrame& slab) {

@@ -17,9 +17,9 @@ double ssim(const Image2<float>& image, const Image2<float>& clean);
 /// where all edges are kept. NaN where one has no edge.
 double edge_preservation(const Image2<float>& image, const Image2<float>& clean);
 
-/// Equivalent number of looks (m / s)^2 of the ratio image / clean, which holds speckle and no scene: median over the 16 x 16
-/// tiles where the clean twin is nowhere below 20. Of amplitudes: fully developed speckle of one look has 3.66. NaN without
-/// such a tile.
+/// Equivalent number of looks (m / s)^2 of the ratio image / clean, which holds speckle and no scene: median over the
+/// 16 x 16 tiles where the clean twin is nowhere below 20. Of amplitudes: fully developed speckle of one look has 3.66.
+/// NaN without such a tile.
 double equivalent_looks(const Image2<float>& image, const Image2<float>& clean);
 
 }  // namespace ensonify

@@ -11,8 +11,9 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from support import ProgramTest, RECIPE, SCENE, SONAR, files, leftovers, main, manifest
 
-COMMANDS = ["", "evaluate", "evaluate filters", "filter", "generate", "ping", "scene", "scene list", "scene check", "scene show", "scene export", "sonar",
-            "sonar list", "sonar check", "sonar show", "stats", "verify", "voxelize"]
+COMMANDS = ["", "evaluate", "evaluate filters", "evaluate map", "explore", "filter", "generate", "map", "ping", "scene",
+            "scene list", "scene check", "scene show", "scene export", "sonar", "sonar list", "sonar check", "sonar show",
+            "stats", "verify", "voxelize"]
 
 CUBE_OBJ = """v -1 -1 -1
 v 1 -1 -1

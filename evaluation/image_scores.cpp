@@ -7,20 +7,17 @@
 #include <optional>
 #include <vector>
 
+#include "ensonify/filters/mat_view.hpp"
+
 namespace ensonify {
 namespace {
 
 constexpr double full_scale = 255.0;
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-/// OpenCV has no const view: only for arguments that it reads.
-cv::Mat view(const Image2<float>& image) {
-  return {image.rows(), image.columns(), CV_32F, const_cast<float*>(image.pixels().data())};
-}
-
 cv::Mat doubles(const Image2<float>& image) {
   cv::Mat mat;
-  view(image).convertTo(mat, CV_64F);
+  mat_view(image).convertTo(mat, CV_64F);
   return mat;
 }
 
@@ -78,8 +75,8 @@ double ssim(const Image2<float>& image, const Image2<float>& clean) {
 
 double edge_preservation(const Image2<float>& image, const Image2<float>& clean) {
   cv::Mat a, b;
-  cv::Laplacian(view(image), a, CV_32F);
-  cv::Laplacian(view(clean), b, CV_32F);
+  cv::Laplacian(mat_view(image), a, CV_32F);
+  cv::Laplacian(mat_view(clean), b, CV_32F);
   a -= cv::mean(a);
   b -= cv::mean(b);
   const double energy = a.dot(a) * b.dot(b);

@@ -33,7 +33,7 @@ fs::path own_file() {
 /// share/ensonify beside or above the program: the prefix it is installed in, or its build folder.
 std::optional<fs::path> data_near_program() {
   std::error_code no_throw;
-  constexpr int levels = 4;
+  constexpr int levels = 6;
   fs::path folder = own_file().parent_path();
   for (int i = 0; i < levels && !folder.empty(); ++i, folder = folder.parent_path()) {
     if (fs::path data = folder / "share" / "ensonify"; fs::is_directory(data, no_throw)) return data;
@@ -72,6 +72,11 @@ fs::path resolve_name(const std::string& kind, const std::string& path_or_name) 
   throw ConfigError(fmt::format("{}: no such file and no bundled name of {}; {}", path_or_name, kind,
                                 nearest.empty() ? fmt::format("there are {}", fmt::join(names, ", "))
                                                 : fmt::format("did you mean '{}'?", nearest)));
+}
+
+Reader open_config(const std::string& kind, const ConfigSource& source) {
+  if (const auto* text = std::get_if<ConfigText>(&source)) return Reader::from_text(text->yaml, text->name);
+  return Reader::from_file(resolve_name(kind, std::get<std::string>(source)));
 }
 
 }  // namespace ensonify

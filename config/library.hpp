@@ -2,7 +2,10 @@
 
 #include <filesystem>
 #include <string>
+#include <variant>
 #include <vector>
+
+#include "ensonify/config/reader.hpp"
 
 namespace ensonify {
 
@@ -16,5 +19,17 @@ std::vector<std::string> library_names(const std::string& kind);
 
 /// A path is taken as it is, a bundled name found in the library; else ConfigError naming the nearest name.
 std::filesystem::path resolve_name(const std::string& kind, const std::string& path_or_name);
+
+/// A configuration in memory: YAML, and so JSON too. `name` stands in messages where a path would; relative paths in it
+/// start from the working folder.
+struct ConfigText {
+  std::string yaml, name;
+};
+
+/// Where a configuration comes from: a path or a bundled name, or a text.
+using ConfigSource = std::variant<std::string, ConfigText>;
+
+/// Throws ConfigError as resolve_name() and Reader do.
+Reader open_config(const std::string& kind, const ConfigSource& source);
 
 }  // namespace ensonify

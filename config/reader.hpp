@@ -66,6 +66,8 @@ class Reader {
   [[noreturn]] void fail(std::string_view key, const std::string& rule) const;
   /// "file:line: path.key"
   std::string where(std::string_view key) const;
+  /// The file's path, or the name of the text.
+  const std::string& source_name() const { return source_->name; }
   /// Folder that relative paths in this file start from.
   const std::filesystem::path& folder() const { return source_->folder; }
 

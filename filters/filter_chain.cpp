@@ -96,8 +96,8 @@ GreyImage apply(const FilterChain& chain, const GreyImage& raw) {
   return image;
 }
 
-FilterChain load_filter_chain(const std::string& path_or_name) {
-  Reader file = Reader::from_file(resolve_name("filters", path_or_name));
+FilterChain load_filter_chain(const ConfigSource& source) {
+  Reader file = open_config("filters", source);
   FilterChain chain;
   chain.name = file.text("name");
   file.text_or("about", "");

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ensonify/config/library.hpp"
 #include "ensonify/filters/filter_method.hpp"
 
 namespace ensonify {
@@ -21,9 +22,8 @@ GreyImage apply(const FilterChain& chain, const GreyImage& raw);
 /// One step; `raw` is what the chain began with.
 GreyImage apply(const FilterStep& step, const GreyImage& image, const GreyImage& raw);
 
-/// Loads a chain (path or bundled name; keys `name`, `steps`, each step `method` and its parameters). Throws
-/// ConfigError.
-FilterChain load_filter_chain(const std::string& path_or_name);
+/// Loads a chain (keys `name`, `steps`, each step `method` and its parameters). Throws ConfigError.
+FilterChain load_filter_chain(const ConfigSource& source);
 
 /// What a command line names: a method with its defaults, else a chain's file or bundled name. Throws ConfigError.
 FilterChain find_filter(const std::string& method_or_chain);

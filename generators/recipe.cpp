@@ -149,8 +149,8 @@ int Recipe::frames() const {
   return std::accumulate(splits.begin(), splits.end(), 0, [](int sum, const Split& s) { return sum + s.frames; });
 }
 
-Recipe load_recipe(const std::string& path_or_name) {
-  Reader file = Reader::from_file(resolve_name("generators", path_or_name));
+Recipe load_recipe(const ConfigSource& source) {
+  Reader file = open_config("generators", source);
   Recipe recipe;
   recipe.name = file.text("name");
   recipe.title = file.text_or("title", recipe.name);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ensonify/config/distribution.hpp"
+#include "ensonify/config/library.hpp"
 #include "ensonify/generators/trajectory_spec.hpp"
 
 namespace ensonify {
@@ -60,8 +61,8 @@ struct Recipe {
   int frames() const;
 };
 
-/// Loads a recipe (path or bundled name). Scene, sonar and noise files are relative to the recipe, or bundled names.
+/// Loads a recipe. Scene, sonar and noise files are relative to the recipe, or bundled names.
 /// Throws ConfigError, also where two splits share a place; DataError where a trajectory file is broken.
-Recipe load_recipe(const std::string& path_or_name);
+Recipe load_recipe(const ConfigSource& source);
 
 }  // namespace ensonify

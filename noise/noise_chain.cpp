@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "ensonify/config/library.hpp"
 #include "ensonify/config/reader.hpp"
 #include "ensonify/core/error.hpp"
 
@@ -91,8 +90,8 @@ bool NoiseChain::acts_before_image() const {
   return std::any_of(stages.begin(), stages.end(), [](const auto& s) { return domain_of(s) < NoiseDomain::image; });
 }
 
-NoiseProfile load_noise(const std::string& path_or_name) {
-  Reader file = Reader::from_file(resolve_name("noise", path_or_name));
+NoiseProfile load_noise(const ConfigSource& source) {
+  Reader file = open_config("noise", source);
   NoiseProfile profile;
   profile.name = file.text("name");
   for (Reader& stage : file.children("stages")) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "ensonify/config/distribution.hpp"
+#include "ensonify/config/library.hpp"
 #include "ensonify/noise/noise_stage.hpp"
 #include "ensonify/sensor_models/sonar_model.hpp"
 
@@ -35,8 +36,8 @@ struct NoiseProfile {
 
 using SampledValues = std::vector<std::pair<std::string, double>>;
 
-/// Loads a profile (path or bundled name). Throws ConfigError.
-NoiseProfile load_noise(const std::string& path_or_name);
+/// Loads a profile. Throws ConfigError.
+NoiseProfile load_noise(const ConfigSource& source);
 
 /// Throws ConfigError where a stage does not fit the instrument: a stripe or a cross-talk period wider than the fan.
 void check_noise(const NoiseProfile& profile, const SonarModel& sonar);

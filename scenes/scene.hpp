@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "ensonify/config/library.hpp"
 #include "ensonify/core/pose.hpp"
 #include "ensonify/scenes/material.hpp"
 #include "ensonify/scenes/mesh.hpp"
@@ -39,9 +40,9 @@ struct Scene {
   std::vector<std::string> warnings;              ///< what loading found odd, e.g. a mesh that looks like millimetres
 };
 
-/// Loads a scene YAML (path or bundled name) in the layout given. Same file and layout: same bits.
+/// Loads a scene YAML in the layout given. Same file and layout: same bits.
 /// Throws ConfigError (the YAML breaks a rule) or DataError (a mesh file can not be read).
-Scene load_scene(const std::string& path_or_name, std::uint64_t layout = 0);
+Scene load_scene(const ConfigSource& source, std::uint64_t layout = 0);
 
 /// The mesh files that a scene YAML names, in its order, without reading them. Throws ConfigError.
 std::vector<std::filesystem::path> scene_mesh_files(const std::string& path_or_name);

@@ -3,7 +3,6 @@
 #include <set>
 #include <string>
 
-#include "ensonify/config/library.hpp"
 #include "ensonify/scenes/material_library.hpp"
 #include "ensonify/scenes/scene.hpp"
 #include "ensonify/scenes/scene_objects.hpp"
@@ -120,15 +119,14 @@ std::vector<Material> all_materials(Reader& file) {
 
 }  // namespace
 
-Scene load_scene(const std::string& path_or_name, std::uint64_t layout) {
-  const std::filesystem::path path = resolve_name("scenes", path_or_name);
-  Reader file = Reader::from_file(path);
+Scene load_scene(const ConfigSource& source, std::uint64_t layout) {
+  Reader file = open_config("scenes", source);
   const RandomKey layout_key = RandomKey::from_seed(layout);
 
   SceneDraft draft;
   Scene& scene = draft.scene;
   scene.layout = layout;
-  scene.name = file.text_or("name", path.stem().string());
+  scene.name = file.text_or("name", std::filesystem::path(file.source_name()).stem().string());
   scene.title = file.text_or("title", scene.name);
   scene.water = read_water(file);
   read_extent(file, scene);

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <map>
 
-#include "ensonify/config/library.hpp"
 #include "ensonify/config/reader.hpp"
 #include "ensonify/sensor_models/beam_table.hpp"
 #include "ensonify/sensor_models/sonar_model.hpp"
@@ -104,8 +103,8 @@ ReceiveChain read_receive(Reader receive) {
 
 }  // namespace
 
-SonarModel load_sonar(const std::string& path_or_name, const RangeWindow& window) {
-  Reader file = Reader::from_file(resolve_name("sensor_models", path_or_name));
+SonarModel load_sonar(const ConfigSource& source, const RangeWindow& window) {
+  Reader file = open_config("sensor_models", source);
   SonarModel sonar;
   sonar.name = file.text("name");
   sonar.title = file.text("title");

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "ensonify/config/library.hpp"
 #include "ensonify/core/sonar_geometry.hpp"
 #include "ensonify/sensor_models/aperture.hpp"
 
@@ -53,7 +54,7 @@ struct RangeWindow {
   std::optional<int> range_bins;  ///< 0: native bins; range_max_m is then rounded down to whole bins
 };
 
-/// Loads an instrument (path or bundled name). Throws ConfigError.
-SonarModel load_sonar(const std::string& path_or_name, const RangeWindow& window = {});
+/// Loads an instrument. Throws ConfigError.
+SonarModel load_sonar(const ConfigSource& source, const RangeWindow& window = {});
 
 }  // namespace ensonify

@@ -8,13 +8,12 @@
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/cli/signals.hpp"
 #include "ensonify/generators/describe.hpp"
-#include "ensonify/generators/form_images.hpp"
 #include "ensonify/generators/json_text.hpp"
+#include "ensonify/generators/simulator.hpp"
 #include "ensonify/generators/truth_channels.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/fan_view.hpp"
 #include "ensonify/output/png.hpp"
-#include "ensonify/sim/trace_ping.hpp"
 
 namespace ensonify::cli {
 namespace {
@@ -64,19 +63,9 @@ void run(const Arguments& a) {
   const NoiseProfile profile = load_noise(a.noise);
   const Pose T_world_sonar = parse_pose(a.pose);
   const Scene scene = open_scene(a.scene, a.layout);
-  const RayScene rays(scene, a.isa);
-
-  check_noise(profile, sonar);
-  const RandomKey key = RandomKey::from_seed(a.seed);
-  SampledValues sampled;
-  const ImageSettings settings{sample_noise(profile, key.child("noise parameters"), sampled), 0.0, 8};
-  TraceOptions options = trace_options(settings.noise, true);
-  options.motion = parse_twist(a.velocity);
-  const Ping ping = PingTracer(rays, sonar, scene.water).trace(T_world_sonar, options);
-  const RandomKey first = key.child("noise");
-  const PingSetting setting{T_world_sonar, key.child("surface").child(scene.name), key.child("device").child(sonar.name),
-                            a.frame == 0 ? first : first.child(a.frame)};
-  const PingImages images = form_images(Receiver(sonar), ping, settings, setting);
+  const Simulator simulator(scene, sonar, profile, a.isa);
+  const auto [ping, images, sampled] =
+      simulator.ping({T_world_sonar, parse_twist(a.velocity), ping_keys(a.seed, a.frame)});
 
   nlohmann::json record{{"scene", scene.name},
                         {"layout", scene.layout},
@@ -85,7 +74,7 @@ void run(const Arguments& a) {
                         {"seed", a.seed},
                         {"frame", a.frame},
                         {"isa", a.isa},
-                        {"mask", {{"threshold", settings.mask_threshold}}},
+                        {"mask", {{"threshold", default_mask_threshold}}},
                         {"T_world_sonar", describe(T_world_sonar)},
                         {"velocity", a.velocity},
                         {"water",
@@ -142,8 +131,7 @@ void add_ping(CLI::App& app) {
       ->check(whole_number())
       ->capture_default_str();
   command
-      ->add_option("--frame", a->frame,
-                   "Number of the ping: another one has new receiver noise over the same speckle")
+      ->add_option("--frame", a->frame, "Number of the ping: another one has new receiver noise over the same speckle")
       ->check(whole_number())
       ->capture_default_str();
   command->add_option("--layout", a->layout, "Layout of the scene")->check(whole_number())->capture_default_str();

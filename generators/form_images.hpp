@@ -17,10 +17,13 @@ struct PingImages {
   Image2<float> sidelobe;       ///< mean power through sidelobes and leaks; empty where the noise models none
 };
 
+/// Grey level.
+inline constexpr int default_mask_threshold = 8;
+
 struct ImageSettings {
   NoiseChain noise;
   double gain_db = 0;  ///< of the raw image
-  int mask_threshold = 8;
+  int mask_threshold = default_mask_threshold;
 };
 
 /// What a trace must give for the chain.

@@ -98,19 +98,26 @@ RandomKey FrameMaker::settings_key(const FramePose& frame) const {
   if (std::holds_alternative<RandomPoses>(recipe_.splits[static_cast<std::size_t>(frame.split)].poses)) {
     return frame_key(frame.index);
   }
-  return RandomKey::from_seed(recipe_.seed).child("settings").child(places_[static_cast<std::size_t>(frame.place)].name);
+  return RandomKey::from_seed(recipe_.seed)
+      .child("settings")
+      .child(places_[static_cast<std::size_t>(frame.place)].name);
+}
+
+int FrameMaker::first_place_of(int split) const {
+  int first = 0;
+  for (int s = 0; s < split; ++s) first += static_cast<int>(recipe_.splits[s].places.size());
+  return first;
 }
 
 FramePose FrameMaker::locate(int index) const {
   FramePose frame;
   frame.index = index;
   frame.number = index;
-  int first_place = 0;
   while (frame.number >= recipe_.splits[frame.split].frames) {
     frame.number -= recipe_.splits[frame.split].frames;
-    first_place += static_cast<int>(recipe_.splits[frame.split].places.size());
     ++frame.split;
   }
+  const int first_place = first_place_of(frame.split);
   const Split& split = recipe_.splits[frame.split];
   const int places = static_cast<int>(split.places.size());
   const bool random = std::holds_alternative<RandomPoses>(split.poses);
@@ -175,22 +182,26 @@ void FrameMaker::refuse_obstructed(int place, const Obstruction& at) const {
                   at.time_s, spec.where, cure_of(spec.path)));
 }
 
+FramePose FrameMaker::random_pose(FramePose frame, RandomKey key) const {
+  const auto& random = std::get<RandomPoses>(recipe_.splits[frame.split].poses);
+  const auto sampled = sample_pose(random, place(frame.place), receiver_.sonar.geometry, key);
+  if (!sampled) {
+    const std::string which =
+        frame.index < 0 ? std::string("a frame beyond the set") : fmt::format("frame {}", frame.index);
+    throw DataError(fmt::format(
+        "{}: no pose in {} has {} m of room and sees enough after {} tries; widen the navigable box, or lower "
+        "clearance_m or least_seen_share in the recipe",
+        which, places_[frame.place].name, random.clearance_m, random.tries));
+  }
+  frame.T_world_sonar = frame.T_world_sonar_est = sampled->T_world_sonar;
+  frame.sampled.emplace_back("pose.tries", sampled->tries);
+  return frame;
+}
+
 FramePose FrameMaker::pose(int index) const {
   FramePose frame = locate(index);
   const Split& split = recipe_.splits[frame.split];
-  if (const auto* random = std::get_if<RandomPoses>(&split.poses)) {
-    const Place& where = place(frame.place);
-    const auto sampled = sample_pose(*random, where, receiver_.sonar.geometry, frame_key(index).child("pose"));
-    if (!sampled) {
-      throw DataError(fmt::format(
-          "frame {}: no pose in {} has {} m of room and sees enough after {} tries; widen the navigable box, or lower "
-          "clearance_m or least_seen_share in the recipe",
-          index, places_[frame.place].name, random->clearance_m, random->tries));
-    }
-    frame.T_world_sonar = frame.T_world_sonar_est = sampled->T_world_sonar;
-    frame.sampled.emplace_back("pose.tries", sampled->tries);
-    return frame;
-  }
+  if (std::holds_alternative<RandomPoses>(split.poses)) return random_pose(frame, frame_key(index).child("pose"));
 
   const auto& spec = std::get<TrajectoryPoses>(split.poses);
   const Slot& where = slot(frame.place);
@@ -213,51 +224,73 @@ FramePose FrameMaker::pose(int index) const {
 
 SonarModel FrameMaker::sonar_for(int index) const {
   SampledValues unused;
-  return sonar_for(index, unused);
+  return sonar_drawn(frame_key(index), unused);
 }
 
-SonarModel FrameMaker::sonar_for(int index, SampledValues& sampled) const {
+SonarModel FrameMaker::sonar_drawn(RandomKey frame, SampledValues& sampled) const {
   if (!window_varies(recipe_)) return receiver_.sonar;
-  RandomSequence random(frame_key(index).child("range_max_m"));
+  RandomSequence random(frame.child("range_max_m"));
   const double range_max_m = sample(*recipe_.range_max_m, random);
   sampled.emplace_back("sonar.range_max_m", range_max_m);
   return load_sonar(recipe_.sonar, window_of(recipe_, range_max_m));
 }
 
-Ping FrameMaker::ping(const FramePose& pose, const TraceOptions& options) const {
+Ping FrameMaker::trace(const FramePose& pose, const SonarModel& sonar, const TraceOptions& options) const {
   const Slot& where = slot(pose.place);
   if (!window_varies(recipe_)) return where.tracer->trace(pose.T_world_sonar, options);
-  return PingTracer(where.place->rays, sonar_for(pose.index), where.place->scene.water)
-      .trace(pose.T_world_sonar, options);
+  return PingTracer(where.place->rays, sonar, where.place->scene.water).trace(pose.T_world_sonar, options);
 }
 
-Frame FrameMaker::make(int index) const {
-  const RandomKey key = frame_key(index);
+Ping FrameMaker::ping(const FramePose& pose, const TraceOptions& options) const {
+  return trace(pose, sonar_for(pose.index), options);
+}
+
+Frame FrameMaker::form(FramePose pose, const Keys& keys) const {
   Frame frame;
-  frame.pose = pose(index);
+  frame.pose = std::move(pose);
   SampledValues& sampled = frame.pose.sampled;
-  frame.sonar = sonar_for(index, sampled);
+  frame.sonar = sonar_drawn(keys.frame, sampled);
 
   ImageSettings settings;
-  const RandomKey instrument = settings_key(frame.pose);
   settings.noise = sample_noise(noises_[static_cast<std::size_t>(frame.pose.noise)],
-                                instrument.child("noise parameters"), sampled);
-  RandomSequence random(instrument.child("gain_db"));
+                                keys.settings.child("noise parameters"), sampled);
+  RandomSequence random(keys.settings.child("gain_db"));
   settings.gain_db = sample(recipe_.gain_db, random);
   if (!std::holds_alternative<Constant>(recipe_.gain_db)) sampled.emplace_back("sonar.gain_db", settings.gain_db);
   settings.mask_threshold = recipe_.mask_threshold;
 
-  const RandomKey set = RandomKey::from_seed(recipe_.seed);
-  const PingSetting setting{frame.pose.T_world_sonar, set.child("surface").child(places_[frame.pose.place].name),
-                            set.child("device").child(receiver_.sonar.name), key.child("noise")};
+  const PingSetting setting{frame.pose.T_world_sonar, keys.set.child("surface").child(places_[frame.pose.place].name),
+                            keys.set.child("device").child(receiver_.sonar.name), keys.frame.child("noise")};
   TraceOptions options = trace_options(settings.noise, recipe_.cell_truth);
   options.motion = frame.pose.motion;
-  Ping ping = this->ping(frame.pose, options);
+  Ping ping = trace(frame.pose, frame.sonar, options);
   frame.images = window_varies(recipe_) ? form_images(Receiver(frame.sonar), ping, settings, setting)
                                         : form_images(receiver_, ping, settings, setting);
   frame.truth = std::move(ping.truth);
   frame.echo = std::move(ping.echo);
   return frame;
+}
+
+Frame FrameMaker::make(int index) const {
+  FramePose where = pose(index);
+  const Keys keys{RandomKey::from_seed(recipe_.seed), frame_key(index), settings_key(where)};
+  return form(std::move(where), keys);
+}
+
+Frame FrameMaker::draw(int split, RandomKey seed, RandomKey frame) const {
+  const Split& from = recipe_.splits.at(static_cast<std::size_t>(split));
+  if (!std::holds_alternative<RandomPoses>(from.poses)) {
+    throw ConfigError(fmt::format(
+        "recipe {}: the poses of split {} lie on trajectories; frames without end need a split with random_poses",
+        recipe_.name, from.name));
+  }
+  FramePose where;
+  where.index = -1;
+  where.split = split;
+  where.place =
+      first_place_of(split) + RandomSequence(frame.child("place")).below(static_cast<int>(from.places.size()));
+  where.noise = RandomSequence(frame.child("noise profile")).below(static_cast<int>(noises_.size()));
+  return form(random_pose(where, frame.child("pose")), {seed, frame, frame});
 }
 
 }  // namespace ensonify

@@ -57,17 +57,29 @@ class FrameMaker {
 
   /// Split, number, place and noise profile of a frame, without its pose.
   FramePose locate(int index) const;
-  /// The instrument as it is set in a frame.
+  /// The instrument as it is set in a frame of the set.
   SonarModel sonar_for(int index) const;
   /// Pose of a frame, without its ping. Throws DataError where no random pose keeps the rules, ConfigError where the
   /// trajectory is inside of something at that time.
   FramePose pose(int index) const;
+  /// Of a frame of the set.
   Ping ping(const FramePose& pose, const TraceOptions& options = {}) const;
   Frame make(int index) const;
 
+  /// A frame beyond the set: place, pose, settings and noise drawn with `frame`; scatterers and device are those that
+  /// `seed` names. A pure function of split and keys. Throws ConfigError where the split follows trajectories.
+  Frame draw(int split, RandomKey seed, RandomKey frame) const;
+
  private:
   struct Slot;
-  SonarModel sonar_for(int index, SampledValues& sampled) const;
+  struct Keys {
+    RandomKey set, frame, settings;
+  };
+  Frame form(FramePose pose, const Keys& keys) const;
+  FramePose random_pose(FramePose frame, RandomKey key) const;
+  int first_place_of(int split) const;
+  SonarModel sonar_drawn(RandomKey frame, SampledValues& sampled) const;
+  Ping trace(const FramePose& pose, const SonarModel& sonar, const TraceOptions& options) const;
   RandomKey frame_key(int index) const;
   RandomKey settings_key(const FramePose& frame) const;
   const Slot& slot(int place) const;

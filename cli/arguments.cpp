@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 #include <sstream>
 #include <vector>
@@ -69,13 +68,7 @@ Twist parse_twist(const std::string& text) {
 }
 
 Scene open_scene(const std::string& path_or_name, std::uint64_t layout) {
-  const std::filesystem::path path = path_or_name;
-  std::error_code no_throw;
-  const bool yaml = path.extension() == ".yaml" || path.extension() == ".yml" || !path.has_extension();
-  if (!yaml && !std::filesystem::is_regular_file(path, no_throw)) {
-    throw DataError(fmt::format("{}: no such file", path_or_name));
-  }
-  Scene scene = yaml ? load_scene(path_or_name, layout) : scene_from_mesh(path);
+  Scene scene = ensonify::open_scene(path_or_name, layout);
   for (const std::string& warning : scene.warnings) fmt::print(std::cerr, "ensonify: warning: {}\n", warning);
   return scene;
 }

@@ -32,13 +32,11 @@ struct Arguments {
   std::string scene, out, start, gate, plugin, range_bins;
   std::uint64_t layout = 0;
   std::uint64_t seed = 0;
-  std::string sonar = "oculus_m1200d_lf", noise = "paper", filter = "median", model = "arc_shadow";
-  double range_max_m = 10, threshold = 60, resolution_m = 0, depth_m = 0, known_free_m = 0;
-  double p_free = 0.4, p_occupied = 0.7;
+  ExploreChoice choice;
+  double resolution_m = 0, depth_m = 0, known_free_m = 0;
   Vehicle vehicle;
   double turn_rate_degps = 30;
   double drift_m = 0;
-  int steps = 1000;
   int pictures_every = 50;
   double plugin_timeout_s = 10;
   int jobs = 0;
@@ -46,35 +44,27 @@ struct Arguments {
   std::string isa = default_isa, progress = "auto";
 };
 
-FilterChain chain_of(const std::string& name) { return name == "none" ? FilterChain{"none", {}} : find_filter(name); }
-
-ExploreSettings settings_of(const Arguments& a) {
-  ExploreSettings s;
-  s.isa = a.isa;
-  s.seed = a.seed;
+SonarModel sonar_of(const Arguments& a) {
   RangeWindow window;
-  window.range_max_m = a.range_max_m;
+  window.range_max_m = a.choice.range_max_m;
   if (!a.range_bins.empty()) window.range_bins = a.range_bins == "native" ? 0 : std::stoi(a.range_bins);
-  s.sonar = load_sonar(a.sonar, window);
-  s.noise = load_noise(a.noise);
-  s.filter = chain_of(a.filter);
-  s.model = inverse_model_named(a.model);
-  const LogOddsStep step{milli_log_odds(a.p_free), milli_log_odds(a.p_occupied)};
-  std::visit([&](auto& model) { model.step = step; }, s.model);
-  require_valid(s.model);
-  s.threshold = a.threshold;
-  s.steps = a.steps;
-  if (a.drift_m > 0) s.drift = Drift{a.drift_m, 1200};
-  return s;
+  return load_sonar(a.choice.sonar, window);
 }
 
-ExploreSite site_of(const Arguments& a, const Scene& scene, const ExploreSettings& settings) {
+ExploreSettings settings_of(const Arguments& a) {
+  ExploreSettings settings = explore_settings(a.choice);
+  settings.seed = a.seed;
+  if (a.drift_m > 0) settings.drift = Drift{a.drift_m, 1200};
+  return settings;
+}
+
+ExploreSite site_of(const Arguments& a, const Scene& scene, const SonarModel& sonar, const InverseModel& model) {
   SiteRequest request;
   if (a.resolution_m > 0) request.resolution_m = a.resolution_m;
   if (a.depth_m > 0) request.z_m = -a.depth_m;
   if (!a.start.empty()) request.start = parse_pose(a.start, "--start");
   if (a.known_free_m > 0) request.known_free_m = a.known_free_m;
-  return explore_site(scene, settings.sonar, settings.model, a.vehicle, request);
+  return explore_site(scene, sonar, model, a.vehicle, request);
 }
 
 /// Takes away the files of a run: those of an older one, or of one that went wrong.
@@ -100,19 +90,19 @@ void prepare_folder(const Arguments& a) {
   remove_run(out);
 }
 
-nlohmann::json asked(const Arguments& a, const ExploreSettings& s, const ExploreSite& site) {
+nlohmann::json asked(const Arguments& a, const SonarModel& sonar, const NoiseProfile& noise, const ExploreSite& site) {
   return {{"layout", a.layout},
-          {"sonar", describe(s.sonar)},
-          {"noise", describe(s.noise)},
-          {"filter", a.filter},
-          {"model", a.model},
-          {"p_free", a.p_free},
-          {"p_occupied", a.p_occupied},
-          {"threshold", a.threshold},
+          {"sonar", describe(sonar)},
+          {"noise", describe(noise)},
+          {"filter", a.choice.filter},
+          {"model", a.choice.model},
+          {"p_free", a.choice.p_free},
+          {"p_occupied", a.choice.p_occupied},
+          {"threshold", a.choice.threshold},
           {"seed", a.seed},
           {"isa", a.isa},
           {"drift_radial_error_m", a.drift_m},
-          {"most_steps", a.steps},
+          {"most_steps", a.choice.steps},
           {"radius_m", a.vehicle.radius_m},
           {"height_m", a.vehicle.height_m},
           {"margin_m", a.vehicle.margin_m},
@@ -135,25 +125,27 @@ void write_results(const fs::path& out, const ExploreRun& run, const ExploreSite
   write_file(out / "summary.json", json_text(summary));  // last: a folder with it is complete
 }
 
-ExploreRun run_loop(const Arguments& a, const Scene& scene, const ExploreSite& site, const ExploreSettings& settings) {
+ExploreRun run_loop(const Arguments& a, const Simulator& simulator, const ExploreSite& site,
+                    const ExploreSettings& settings) {
+  const SonarModel& sonar = simulator.sonar();
   const fs::path out(a.out);
   ProgressLine progress(parse_progress_style(a.progress));
   std::optional<ExplorePlugin> plugin;
   ExploreHooks hooks;
   if (!a.plugin.empty()) {
     plugin.emplace(PluginSettings{a.plugin, a.plugin_timeout_s, out / "plugin", [] { return caught_signal() != 0; }},
-                   site, a.vehicle, settings.sonar, a.steps);
+                   site, a.vehicle, sonar, a.choice.steps);
     hooks.guest = [&](const ExploreMoment& moment) { return plugin->ask(moment); };
   }
   hooks.after_step = [&](const ExploreMoment& moment, const Slice& map, const std::vector<ExploreStep>& so_far) {
     if (a.pictures_every > 0 && moment.step % a.pictures_every == 0) {
-      const auto strip = explore_strip(moment.ping, settings.sonar.geometry, map, so_far, site, a.vehicle.radius_m);
+      const auto strip = explore_strip(moment.ping, sonar.geometry, map, so_far, site, a.vehicle.radius_m);
       write_file(out / fmt::format("step_{:06}.png", moment.step), encode_png(strip));
     }
-    progress.show("explore", moment.step + 1, moment.step + 1, a.steps);
+    progress.show("explore", moment.step + 1, moment.step + 1, a.choice.steps);
     return caught_signal() == 0;
   };
-  return explore(scene, site, a.vehicle, settings, hooks);
+  return explore(simulator, site, a.vehicle, settings, hooks);
 }
 
 std::string share(const nlohmann::json& value) {
@@ -166,24 +158,27 @@ void run(Arguments& a) {
   a.vehicle.limits.turn_radps = radians(a.turn_rate_degps);
   std::optional<ExploreGate> gate;
   if (!a.gate.empty()) gate = load_gate(a.gate);
+  const SonarModel sonar = sonar_of(a);
+  const NoiseProfile noise = load_noise(a.choice.noise);
   const ExploreSettings settings = settings_of(a);
   const Scene scene = open_scene(a.scene, a.layout);
-  const ExploreSite site = site_of(a, scene, settings);
+  const ExploreSite site = site_of(a, scene, sonar, settings.model);
   prepare_folder(a);
   watch_signals();
 
   nlohmann::json summary;
   std::vector<GateLine> lines;
   try {
-    const ExploreRun run = run_loop(a, scene, site, settings);
+    const Simulator simulator(scene, sonar, noise, a.isa);
+    const ExploreRun run = run_loop(a, simulator, site, settings);
     if (caught_signal() != 0) throw DataError("stopped");
     summary = summary_of(run, site, a.vehicle);
     summary["scene"] = scene.name;
-    summary["settings"] = asked(a, settings, site);
+    summary["settings"] = asked(a, sonar, noise, site);
     if (gate) lines = judge(*gate, run.steps);
     for (const GateLine& line : lines) summary["gate"].push_back({{"passed", line.passed}, {"text", line.text}});
-    write_file(fs::path(a.out) / "final.png", encode_png(explore_strip(run.ping, settings.sonar.geometry, run.map,
-                                                                       run.steps, site, a.vehicle.radius_m)));
+    write_file(fs::path(a.out) / "final.png",
+               encode_png(explore_strip(run.ping, sonar.geometry, run.map, run.steps, site, a.vehicle.radius_m)));
     write_results(a.out, run, site, summary);
   } catch (const std::exception&) {
     remove_run(a.out);
@@ -203,23 +198,25 @@ void run(Arguments& a) {
 }
 
 void add_loop_options(CLI::App& command, Arguments& a) {
-  command.add_option("--filter", a.filter, "Method or chain between ping and mapper (ensonify filter --list), or none")
+  command
+      .add_option("--filter", a.choice.filter,
+                  "Method or chain between ping and mapper (ensonify filter --list), or none")
       ->capture_default_str();
-  command.add_option("--model", a.model, "What a ping says of cells (docs/mapping.md)")
+  command.add_option("--model", a.choice.model, "What a ping says of cells (docs/mapping.md)")
       ->check(CLI::IsMember({"points", "arc", "arc_shadow", "carve"}))
       ->capture_default_str();
-  command.add_option("--threshold", a.threshold, "Least grey level of an echo, after the filter")
+  command.add_option("--threshold", a.choice.threshold, "Least grey level of an echo, after the filter")
       ->check(CLI::Range(0.0, 256.0))
       ->capture_default_str();
-  command.add_option("--p-free", a.p_free, "A cell's probability of being occupied after one silent look")
+  command.add_option("--p-free", a.choice.p_free, "A cell's probability of being occupied after one silent look")
       ->check(CLI::Range(0.001, 0.499))
       ->capture_default_str();
-  command.add_option("--p-occupied", a.p_occupied, "The same after one echo")
+  command.add_option("--p-occupied", a.choice.p_occupied, "The same after one echo")
       ->check(CLI::Range(0.501, 0.999))
       ->capture_default_str();
   command.add_option("--resolution", a.resolution_m, "Cells of map and truth in metres (default: the scene's)")
       ->check(above_zero());
-  command.add_option("--steps", a.steps, "At most so many pings")
+  command.add_option("--steps", a.choice.steps, "At most so many pings")
       ->check(CLI::Range(1, 1'000'000))
       ->capture_default_str();
   command.add_option("--gate", a.gate, "YAML of bounds that the run must keep; exit code 1 where it does not");
@@ -270,13 +267,13 @@ void add_explore(CLI::App& app) {
       ->required();
   command->add_option("--out", a->out, "Folder for steps, summary, map and pictures")->required()->check(some_path());
   command->add_flag("--force", a->force, "Replace a run that is there");
-  command->add_option("--sonar", a->sonar, "Sonar YAML or bundled name")->capture_default_str();
-  command->add_option("--range-max", a->range_max_m, "End of the range window in metres")
+  command->add_option("--sonar", a->choice.sonar, "Sonar YAML or bundled name")->capture_default_str();
+  command->add_option("--range-max", a->choice.range_max_m, "End of the range window in metres")
       ->check(above_zero())
       ->capture_default_str();
   command->add_option("--range-bins", a->range_bins, "Range bins of the image, or native")
       ->check(CLI::IsMember({"native"}) | CLI::Range(1, 16384));
-  command->add_option("--noise", a->noise, "Noise YAML or bundled name (docs/noise.md)")->capture_default_str();
+  command->add_option("--noise", a->choice.noise, "Noise YAML or bundled name (docs/noise.md)")->capture_default_str();
   command->add_option("--seed", a->seed, "Seed of noise and drift")->check(whole_number())->capture_default_str();
   command->add_option("--layout", a->layout, "Layout of the scene")->check(whole_number())->capture_default_str();
   add_loop_options(*command, *a);

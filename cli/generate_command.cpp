@@ -33,10 +33,7 @@ struct Arguments {
 Recipe recipe_of(const Arguments& arguments) {
   Recipe recipe = load_recipe(arguments.recipe);
   if (arguments.seed >= 0) recipe.seed = static_cast<std::uint64_t>(arguments.seed);
-  if (arguments.pairs > 0) {
-    if (recipe.splits.front().name != "train") throw ConfigError("--pairs: the recipe has no split 'train'");
-    recipe.splits.front().frames = arguments.pairs;
-  }
+  if (arguments.pairs > 0) set_training_pairs(recipe, arguments.pairs);
   return recipe;
 }
 
@@ -47,14 +44,6 @@ void set_shard(const std::string& text, GenerateOptions& options) {
       options.shard >= options.shards) {
     throw ConfigError(fmt::format("--shard {}: must be K/N with K from 0 to N - 1, such as 0/4", text));
   }
-}
-
-/// What someone types to get the same dataset.
-std::string command_line(const Arguments& a, const Recipe& recipe) {
-  std::string line =
-      fmt::format("ensonify generate {} --seed {} --isa {} --format {}", a.recipe, recipe.seed, a.isa, a.format);
-  if (a.pairs > 0) line += fmt::format(" --pairs {}", a.pairs);
-  return line + " --out DIR";
 }
 
 void run(const Arguments& arguments) {
@@ -69,7 +58,7 @@ void run(const Arguments& arguments) {
   options.format = arguments.format == "folder" ? SampleFormat::folder : SampleFormat::webdataset;
   options.force = arguments.force;
   options.isa = arguments.isa;
-  options.command_line = command_line(arguments, recipe);
+  options.command_line = command_line_of(arguments.recipe, recipe, options.isa, options.format, arguments.pairs);
   if (arguments.only >= 0) {
     fmt::print("{}\n", generate_only(recipe, options, arguments.only));
     return;

@@ -120,6 +120,10 @@ FilterChain find_filter(const std::string& method_or_chain) {
   return {method_or_chain, {make_filter(method_or_chain)}};  // says which method is nearest
 }
 
+FilterChain find_filter_or_none(const std::string& name) {
+  return name == "none" ? FilterChain{name, {}} : find_filter(name);
+}
+
 FilterChain chain_for_maps(FilterChain filter, bool post_process) {
   auto& steps = filter.steps;
   if (!steps.empty() && role_of(steps.back().method) == FilterRole::detects) steps.push_back({Mask{}});

@@ -28,6 +28,9 @@ FilterChain load_filter_chain(const ConfigSource& source);
 /// What a command line names: a method with its defaults, else a chain's file or bundled name. Throws ConfigError.
 FilterChain find_filter(const std::string& method_or_chain);
 
+/// The same, or no step at all for "none".
+FilterChain find_filter_or_none(const std::string& name);
+
 /// The chain that Lin et al. 2023 put before their mapper: the filter (no steps: the raw image); where it ends in a
 /// mask, that mask applied to the raw image; and, where `post_process`, the unsharp filter and histogram equalisation.
 FilterChain chain_for_maps(FilterChain filter, bool post_process);

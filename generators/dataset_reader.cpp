@@ -112,14 +112,12 @@ void set_image(FramePixels& pixels, const std::string& kind, int bits, std::span
     pixels.clean = std::move(image);
   else if (kind == "mask")
     pixels.mask = std::move(image);
-  else if (kind == "labels")
-    pixels.labels = std::move(image);
   else
-    throw DataError(fmt::format("{}: not an image of a frame", name.string()));
+    pixels.labels = std::move(image);
 }
 
 void read_tar_block(const Dataset& dataset, const DatasetBlock& block, const std::function<bool(int)>& wanted,
-                    const std::function<void(int, const FramePixels&)>& visit) {
+                    const std::function<void(int, const FramePixels&)>& visit, const FrameKinds& which) {
   const std::string& split = dataset.splits[static_cast<std::size_t>(block.split)].name;
   const fs::path path = DatasetPaths{dataset.folder}.tar(split, block.number_in_split);
   const int end = block.first + block.frames;
@@ -132,7 +130,10 @@ void read_tar_block(const Dataset& dataset, const DatasetBlock& block, const std
     if (!member.starts_with(stem)) throw DataError(fmt::format("{}: unexpected member {}", path.string(), member));
     const std::string kind = member.substr(stem.size(), member.find('.', stem.size()) - stem.size());
     if (kind != "json") {
-      if (wanted(number)) set_image(pixels, kind, dataset.raw_bits, bytes, path / member);
+      if (std::ranges::find(kinds, kind) == kinds.end()) {
+        throw DataError(fmt::format("{}: {} is not an image of a frame", path.string(), member));
+      }
+      if (wanted(number) && which.has(kind)) set_image(pixels, kind, dataset.raw_bits, bytes, path / member);
       ++images;
       return;
     }
@@ -145,9 +146,10 @@ void read_tar_block(const Dataset& dataset, const DatasetBlock& block, const std
   if (number != end) throw DataError(fmt::format("{}: frames are missing", path.string()));
 }
 
-FramePixels read_files(const Dataset& dataset, int split, int number) {
+FramePixels read_files(const Dataset& dataset, int split, int number, const FrameKinds& which) {
   FramePixels pixels;
   for (const char* kind : kinds) {
+    if (!which.has(kind)) continue;
     const std::string& name = dataset.splits[static_cast<std::size_t>(split)].name;
     const fs::path file = DatasetPaths{dataset.folder}.image(name, kind, number);
     set_image(pixels, kind, dataset.raw_bits, read_file(file), file);
@@ -183,21 +185,22 @@ Dataset open_dataset(const fs::path& folder) {
 }
 
 void read_block(const Dataset& dataset, const DatasetBlock& block, const std::function<bool(int)>& wanted,
-                const std::function<void(int, const FramePixels&)>& visit) {
-  if (dataset.format == SampleFormat::webdataset) return read_tar_block(dataset, block, wanted, visit);
+                const std::function<void(int, const FramePixels&)>& visit, const FrameKinds& which) {
+  if (dataset.format == SampleFormat::webdataset) return read_tar_block(dataset, block, wanted, visit, which);
   for (int number = block.first; number < block.first + block.frames; ++number) {
-    if (wanted(number)) visit(number, read_files(dataset, block.split, number));
+    if (wanted(number)) visit(number, read_files(dataset, block.split, number, which));
   }
 }
 
-FramePixels read_pixels(const Dataset& dataset, int split, int number) {
-  if (dataset.format == SampleFormat::folder) return read_files(dataset, split, number);
+FramePixels read_pixels(const Dataset& dataset, int split, int number, const FrameKinds& which) {
+  if (dataset.format == SampleFormat::folder) return read_files(dataset, split, number, which);
   const auto& blocks = dataset.splits.at(static_cast<std::size_t>(split)).blocks;
   const auto after = std::upper_bound(blocks.begin(), blocks.end(), number,
                                       [](int n, const DatasetBlock& block) { return n < block.first; });
   FramePixels found;
   read_tar_block(
-      dataset, after[-1], [&](int n) { return n == number; }, [&](int, const FramePixels& pixels) { found = pixels; });
+      dataset, after[-1], [&](int n) { return n == number; }, [&](int, const FramePixels& pixels) { found = pixels; },
+      which);
   return found;
 }
 

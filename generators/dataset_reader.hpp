@@ -86,12 +86,13 @@ std::vector<std::string> read_lines(const MetadataIndex& index, int first, int c
 std::vector<FrameInfo> read_frames(const MetadataIndex& index, int first, int count);
 
 /// Calls visit(number, pixels) for every frame of a block for which wanted(number), in order; one frame is in memory
-/// at a time. Throws DataError naming the file that is missing, broken or out of place.
+/// at a time. Images that `which` leaves out stay empty. Throws DataError naming the file that is missing, broken or
+/// out of place.
 void read_block(const Dataset& dataset, const DatasetBlock& block, const std::function<bool(int number)>& wanted,
-                const std::function<void(int number, const FramePixels& pixels)>& visit);
+                const std::function<void(int number, const FramePixels& pixels)>& visit, const FrameKinds& which = {});
 
-/// The images of one frame. Of a WebDataset this reads the shard up to the frame: read_block is for many.
-FramePixels read_pixels(const Dataset& dataset, int split, int number);
+/// The images of one frame. Of a WebDataset this reads the frame's shard: read_block is for many.
+FramePixels read_pixels(const Dataset& dataset, int split, int number, const FrameKinds& which = {});
 
 /// Channels of truth/*.exr (docs/datasets.md). Throws DataError where the dataset has none.
 std::vector<Channel> read_truth(const Dataset& dataset, int split, int number);

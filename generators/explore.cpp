@@ -35,9 +35,8 @@ const char* name_of(ExploreEnd end) {
   return "";
 }
 
-ExploreRun explore(const Scene& scene, const ExploreSite& site, const Vehicle& vehicle, const ExploreSettings& settings,
-                   const ExploreHooks& hooks) {
-  const Simulator simulator(scene, settings.sonar, settings.noise, settings.isa);
+ExploreRun explore(const Simulator& simulator, const ExploreSite& site, const Vehicle& vehicle,
+                   const ExploreSettings& settings, const ExploreHooks& hooks) {
   ExploreWorld world(simulator, site, vehicle, settings);
   const PlannerSettings planner = planner_for(site, vehicle);
   PlannerMemory memory = memory_at(world.map(), site.planar_start(), site.known_free_m);

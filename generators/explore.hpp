@@ -43,7 +43,7 @@ struct ExploreRun {
 /// mapper, planner and guest get dead-reckoned ones, and a wanted pose is reached as dead reckoning believes it. The
 /// same settings give the same steps on any number of threads. Throws ConfigError for settings that do not fit, and
 /// what the guest throws.
-ExploreRun explore(const Scene& scene, const ExploreSite& site, const Vehicle& vehicle, const ExploreSettings& settings,
-                   const ExploreHooks& hooks);
+ExploreRun explore(const Simulator& simulator, const ExploreSite& site, const Vehicle& vehicle,
+                   const ExploreSettings& settings, const ExploreHooks& hooks);
 
 }  // namespace ensonify

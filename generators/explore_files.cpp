@@ -73,12 +73,8 @@ std::vector<double> numbers_of(const NpyArray& array, const std::string& name) {
   return values;
 }
 
-struct GuestCells {
-  GridFrame frame;
-  std::vector<double> log_odds;
-};
-
-GuestCells read_cells(const std::filesystem::path& path) {
+/// Values are kept as far as columns_of() looks at them: by their sign.
+LogOddsMap read_cells(const std::filesystem::path& path) {
   const auto arrays = read_npz(path);
   const auto get = [&](const std::string& key) {
     const auto found = arrays.find(key);
@@ -90,7 +86,7 @@ GuestCells read_cells(const std::filesystem::path& path) {
     return numbers_of(found->second, fmt::format("{}: {}", path.string(), key));
   };
   const std::string values = arrays.contains("log_odds") ? "log_odds" : "occupancy";
-  GuestCells cells{{}, get(values)};
+  std::vector<double> value = get(values);
   const std::vector<double> origin = get("origin");
   const std::vector<double> resolution = get("resolution");
   const std::vector<std::size_t>& shape = arrays.at(values).shape;
@@ -98,23 +94,25 @@ GuestCells read_cells(const std::filesystem::path& path) {
                     std::isfinite(resolution[0]) &&
                     std::ranges::all_of(shape, [](std::size_t n) { return n > 0 && n < 1u << 30; }) &&
                     std::ranges::all_of(origin, [](double v) { return std::isfinite(v); }) &&
-                    std::ranges::none_of(cells.log_odds, [](double v) { return std::isnan(v); });
+                    std::ranges::none_of(value, [](double v) { return std::isnan(v); });
   if (!sane) {
     throw DataError(fmt::format("{}: {} must be [z, y, x] of numbers, origin three, resolution one above 0",
                                 path.string(), values));
   }
-  cells.frame = {{origin[0], origin[1], origin[2]},
-                 resolution[0],
-                 {static_cast<int>(shape[2]), static_cast<int>(shape[1]), static_cast<int>(shape[0])}};
+  LogOddsMap cells{{{origin[0], origin[1], origin[2]},
+                    resolution[0],
+                    {static_cast<int>(shape[2]), static_cast<int>(shape[1]), static_cast<int>(shape[0])}},
+                   {}};
   if (values == "occupancy") {
     const std::vector<double> observable = get("observable");
-    if (observable.size() != cells.log_odds.size()) {
+    if (observable.size() != value.size()) {
       throw DataError(fmt::format("{}: occupancy and observable differ in size", path.string()));
     }
     for (std::size_t i = 0; i < observable.size(); ++i) {
-      cells.log_odds[i] = observable[i] == 0 ? 0.0 : cells.log_odds[i] != 0 ? 1.0 : -1.0;
+      value[i] = observable[i] == 0 ? 0.0 : value[i] != 0 ? 1.0 : -1.0;
     }
   }
+  for (const double v : value) cells.log_odds.push_back(v > 0 ? 1.0F : v < 0 ? -1.0F : 0.0F);
   return cells;
 }
 
@@ -205,7 +203,11 @@ void write_explored_map(const LogOddsGrid& grid, const std::filesystem::path& pa
 }
 
 Slice read_guest_map(const std::filesystem::path& path, const Slice& like, const GridFrame& slab) {
-  const auto [frame, log_odds] = read_cells(path);
+  return columns_of(read_cells(path), like, slab);
+}
+
+Slice columns_of(const LogOddsMap& map, const Slice& like, const GridFrame& slab) {
+  const GridFrame& frame = map.frame;
   const double low_m = slab.origin_m.z();
   const double high_m = low_m + slab.size[2] * slab.resolution_m;
   Slice slice{like.frame, std::vector<ColumnState>(like.columns.size(), ColumnState::unknown)};
@@ -219,7 +221,7 @@ Slice read_guest_map(const std::filesystem::path& path, const Slice& like, const
         const double centre_m = frame.centre_m(0, 0, z).z();
         if (frame.size[2] > 1 && (centre_m < low_m || centre_m > high_m)) continue;
         if (!frame.contains(x, y, z)) continue;
-        const double value = log_odds[frame.index(x, y, z)];
+        const float value = map.log_odds[frame.index(x, y, z)];
         ++cells, free += value < 0 ? 1 : 0, occupied += value > 0 ? 1 : 0;
       }
       ColumnState& state = slice.columns[slice.index(ix, iy)];

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json_fwd.hpp>
 
+#include "ensonify/core/log_odds_map.hpp"
 #include "ensonify/generators/explore.hpp"
 
 namespace ensonify {
@@ -21,9 +22,12 @@ nlohmann::json summary_of(const ExploreRun& run, const ExploreSite& site, const 
 /// The map's log_odds f4 [z, y, x] with origin and resolution, as numpy reads it. Same bytes for the same map.
 void write_explored_map(const LogOddsGrid& grid, const std::filesystem::path& path);
 
-/// A map that a plug-in wrote: log_odds (floats, positive = occupied, 0 = unknown), or occupancy and observable, with
-/// origin and resolution. A column of `like` takes the cells of the file whose centres lie over or under its centre,
-/// within the layers of `slab`. Throws DataError.
+/// A guest's map as a slice: a column of `like` takes the cells of the map whose centres lie over or under its centre,
+/// within the layers of `slab`.
+Slice columns_of(const LogOddsMap& map, const Slice& like, const GridFrame& slab);
+
+/// The same of a map that a plug-in wrote: log_odds (floats, positive = occupied, 0 = unknown), or occupancy and
+/// observable, with origin and resolution. Throws DataError.
 Slice read_guest_map(const std::filesystem::path& path, const Slice& like, const GridFrame& slab);
 
 }  // namespace ensonify

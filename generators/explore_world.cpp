@@ -11,6 +11,18 @@
 
 namespace ensonify {
 
+ExploreSettings explore_settings(const ExploreChoice& choice) {
+  ExploreSettings settings;
+  settings.filter = find_filter_or_none(choice.filter);
+  settings.model = inverse_model_named(choice.model);
+  const LogOddsStep step{milli_log_odds(choice.p_free), milli_log_odds(choice.p_occupied)};
+  std::visit([&](auto& model) { model.step = step; }, settings.model);
+  require_valid(settings.model);
+  settings.threshold = choice.threshold;
+  settings.steps = choice.steps;
+  return settings;
+}
+
 ExploreWorld::ExploreWorld(const Simulator& simulator, const ExploreSite& site, const Vehicle& vehicle,
                            const ExploreSettings& settings)
     : simulator_(&simulator),

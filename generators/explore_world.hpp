@@ -43,12 +43,18 @@ struct ExploreMoment {
   const LogOddsGrid& grid;
 };
 
-/// How pings are made and believed.
+/// What commands and Python take unless told otherwise.
+struct ExploreChoice {
+  std::string sonar = "oculus_m1200d_lf", noise = "paper", filter = "median", model = "arc_shadow";
+  double range_max_m = 10;
+  double threshold = 60;  ///< grey levels
+  double p_free = 0.4, p_occupied = 0.7;
+  int steps = 1000;
+};
+
+/// How pings are believed.
 struct ExploreSettings {
-  std::string isa = default_isa;
   std::uint64_t seed = 0;
-  SonarModel sonar;
-  NoiseProfile noise;
   FilterChain filter;
   InverseModel model;
   LogOddsLimits limits{-4000, 4000};  ///< of the map's cells: what was wrong for long can be right soon
@@ -56,6 +62,9 @@ struct ExploreSettings {
   int steps = 0;
   std::optional<Drift> drift;
 };
+
+/// Filter, model and threshold as chosen. Throws ConfigError.
+ExploreSettings explore_settings(const ExploreChoice& choice);
 
 /// The vehicle in its place: sonar, dead reckoning, filter, map and clock. look() and move() take turns. Pings are
 /// simulated at true poses; the map gets dead-reckoned ones.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <variant>
 
 #include "ensonify/core/image2.hpp"
@@ -13,6 +14,16 @@ struct FramePixels {
   Image2<std::uint8_t> clean;
   Image2<std::uint8_t> mask;
   Image2<std::uint8_t> labels;
+};
+
+/// Which of them to read: decoding is most of the work.
+struct FrameKinds {
+  bool raw = true, clean = true, mask = true, labels = true;
+
+  bool has(std::string_view kind) const {
+    return (kind == "raw" && raw) || (kind == "clean" && clean) || (kind == "mask" && mask) ||
+           (kind == "labels" && labels);
+  }
 };
 
 }  // namespace ensonify

@@ -72,6 +72,14 @@ void report_failures(const DatasetPaths& paths, std::vector<Failure> failures) {
 
 }  // namespace
 
+std::string command_line_of(const std::string& recipe_source, const Recipe& recipe, const std::string& isa,
+                            SampleFormat format, int pairs) {
+  std::string line = fmt::format("ensonify generate {} --seed {} --isa {} --format {}", recipe_source, recipe.seed, isa,
+                                 format == SampleFormat::folder ? "folder" : "webdataset");
+  if (pairs > 0) line += fmt::format(" --pairs {}", pairs);
+  return line + " --out DIR";
+}
+
 Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
   const FrameMaker maker(recipe, options.isa);
   if (recipe.cell_truth && options.format == SampleFormat::webdataset) {

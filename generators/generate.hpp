@@ -33,6 +33,10 @@ enum class Outcome {
   stopped,     ///< options.stopped() said so; call again to resume
 };
 
+/// The command that makes it, for its manifest; `pairs` 0: the recipe's own.
+std::string command_line_of(const std::string& recipe_source, const Recipe& recipe, const std::string& isa,
+                            SampleFormat format, int pairs);
+
 /// Makes a dataset, or what is missing of it. Frames that can not be made are listed in failed.jsonl in the state
 /// folder, the others are made, then DataError. Throws ConfigError and DataError.
 Outcome generate(const Recipe& recipe, const GenerateOptions& options);

@@ -10,6 +10,7 @@
 
 #include "ensonify/config/library.hpp"
 #include "ensonify/config/reader.hpp"
+#include "ensonify/core/error.hpp"
 #include "ensonify/generators/drift.hpp"
 #include "ensonify/generators/read_trajectory.hpp"
 
@@ -188,6 +189,11 @@ Recipe load_recipe(const ConfigSource& source) {
   if (recipe.frames() > max_frames) splits.fail("", fmt::format("at most {} frames", max_frames));
   file.finish();
   return recipe;
+}
+
+void set_training_pairs(Recipe& recipe, int pairs) {
+  if (recipe.splits.front().name != "train") throw ConfigError("pairs: the recipe has no split 'train'");
+  recipe.splits.front().frames = pairs;
 }
 
 }  // namespace ensonify

@@ -52,9 +52,9 @@ struct Recipe {
   std::optional<Distribution> range_max_m;
   std::optional<int> range_bins;       ///< 0: native
   Distribution gain_db = Constant{0};  ///< of the raw image over the nominal receive chain
-  std::vector<std::string> noise;  ///< profiles; of several, each frame (each place, where one is swum) draws one
-  int mask_threshold = 8;   ///< grey level
-  bool cell_truth = false;  ///< write truth/*.exr
+  std::vector<std::string> noise;      ///< profiles; of several, each frame (each place, where one is swum) draws one
+  int mask_threshold = 8;              ///< grey level
+  bool cell_truth = false;             ///< write truth/*.exr
   std::vector<Split> splits;
   Drift drift;
 
@@ -64,5 +64,8 @@ struct Recipe {
 /// Loads a recipe. Scene, sonar and noise files are relative to the recipe, or bundled names.
 /// Throws ConfigError, also where two splits share a place; DataError where a trajectory file is broken.
 Recipe load_recipe(const ConfigSource& source);
+
+/// Other than the recipe's own number of training frames. Throws ConfigError where it has no split `train`.
+void set_training_pairs(Recipe& recipe, int pairs);
 
 }  // namespace ensonify

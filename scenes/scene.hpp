@@ -44,6 +44,9 @@ struct Scene {
 /// Throws ConfigError (the YAML breaks a rule) or DataError (a mesh file can not be read).
 Scene load_scene(const ConfigSource& source, std::uint64_t layout = 0);
 
+/// A scene YAML, or a mesh file by itself (a path with any other extension than .yaml and .yml).
+Scene open_scene(const ConfigSource& source, std::uint64_t layout = 0);
+
 /// The mesh files that a scene YAML names, in its order, without reading them. Throws ConfigError.
 std::vector<std::filesystem::path> scene_mesh_files(const std::string& path_or_name);
 

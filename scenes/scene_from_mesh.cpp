@@ -1,6 +1,9 @@
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 
+#include "ensonify/core/error.hpp"
 #include "ensonify/scenes/material_library.hpp"
 #include "ensonify/scenes/mesh_import.hpp"
 #include "ensonify/scenes/mesh_measure.hpp"
@@ -28,6 +31,18 @@ Scene scene_from_mesh(const std::filesystem::path& mesh) {
   constexpr double max_cells = 64e6;
   scene.grid_resolution_m = std::max(0.05, std::cbrt(scene.bounds_m.volume() / (0.5 * max_cells)));
   return scene;
+}
+
+Scene open_scene(const ConfigSource& source, std::uint64_t layout) {
+  const auto* word = std::get_if<std::string>(&source);
+  if (word == nullptr) return load_scene(source, layout);
+  const std::filesystem::path path = *word;
+  if (!path.has_extension() || path.extension() == ".yaml" || path.extension() == ".yml") {
+    return load_scene(source, layout);
+  }
+  std::error_code no_throw;
+  if (!std::filesystem::is_regular_file(path, no_throw)) throw DataError(fmt::format("{}: no such file", *word));
+  return scene_from_mesh(path);
 }
 
 }  // namespace ensonify

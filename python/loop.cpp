@@ -1,0 +1,342 @@
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <sstream>
+
+#include "ensonify/core/error.hpp"
+#include "ensonify/generators/explore.hpp"
+#include "ensonify/generators/explore_files.hpp"
+#include "ensonify/generators/explore_pictures.hpp"
+#include "ensonify/mapping/map_conversion.hpp"
+#include "ensonify/python/arrays.hpp"
+#include "ensonify/python/made.hpp"
+#include "ensonify/python/per_process.hpp"
+#include "ensonify/python/poses.hpp"
+
+namespace ensonify::python {
+namespace {
+
+/// What there is to see after a ping was mapped. Images are its own; the map can be asked for until the vehicle moves.
+struct PyLook {
+  int step;
+  double time_s;
+  Pose T_world_sonar, T_world_sonar_est;
+  ExplorePing ping;
+  Slice columns;
+  ExploreStep scores;
+  std::shared_ptr<const LogOddsGrid*> grid;
+};
+
+struct PyRun {
+  ExploreRun run;
+  nlohmann::json summary;
+};
+
+py::dict scores_of(const ExploreStep& s) {
+  py::dict scores;
+  scores["coverage"] = s.scores.coverage;
+  scores["boundary_found"] = s.scores.boundary_found;
+  scores["fpr"] = s.scores.fpr;
+  scores["fnr"] = s.scores.fnr;
+  scores["clearance_m"] = s.clearance_m;
+  scores["path_m"] = s.path_m;
+  return scores;
+}
+
+py::array columns_array(const Slice& slice) {
+  static_assert(sizeof(ColumnState) == 1);
+  return py::array_t<std::uint8_t>({slice.frame.size[1], slice.frame.size[0]},
+                                   reinterpret_cast<const std::uint8_t*>(slice.columns.data()));
+}
+
+PlanarPose planar_from(const py::handle& object, const char* what) {
+  const Vec3 v = vec3_from(object, what);
+  constexpr double far_off_m = 1e5;
+  if (v.cwiseAbs().maxCoeff() > far_off_m) throw py::value_error(fmt::format("{} must not be beyond 100000", what));
+  return {v.x(), v.y(), v.z()};
+}
+
+class PyLoop {
+ public:
+  PyLoop(std::shared_ptr<Scene> scene, SonarModel sonar, NoiseProfile noise, const ExploreChoice& choice,
+         Vehicle vehicle, const SiteRequest& request, std::optional<Drift> drift, std::string isa)
+      : scene_(std::move(scene)),
+        sonar_(std::move(sonar)),
+        noise_(std::move(noise)),
+        isa_(std::move(isa)),
+        vehicle_(vehicle),
+        settings_(explore_settings(choice)),
+        site_(explore_site(*scene_, sonar_, settings_.model, vehicle_, request)) {
+    settings_.drift = drift;
+    check_noise(noise_, sonar_);
+  }
+  ~PyLoop() { end_look(); }
+  PyLoop(const PyLoop&) = delete;
+  PyLoop& operator=(const PyLoop&) = delete;
+
+  void reset(std::uint64_t seed) {
+    end_look();
+    settings_.seed = seed;
+    world_.emplace(ready(), site_, vehicle_, settings_);
+    looked_ = false;
+  }
+
+  std::unique_ptr<PyLook> look() {
+    ExploreWorld& world = open_world();
+    if (looked_) throw std::runtime_error("the vehicle has looked from here: call move() before the next look()");
+    {
+      const py::gil_scoped_release unlocked;
+      world.look();
+    }
+    looked_ = true;
+    grid_ = std::make_shared<const LogOddsGrid*>(&world.moment().grid);
+    return look_at(world.moment(), world.map(), world.scored(world.map()));
+  }
+
+  void move(const py::object& wanted) {
+    ExploreWorld& world = open_world();
+    if (!looked_) throw std::runtime_error("call look() first: what the vehicle has seen says where it may go");
+    const PlanarPose to = planar_from(wanted, "wanted");
+    end_look();
+    world.move(limited_step(world.at(), to, vehicle_.limits));
+    looked_ = false;
+  }
+
+  std::unique_ptr<PyRun> explore_with(const py::object& guest, std::optional<int> steps, std::uint64_t seed,
+                                      const py::object& after_step) {
+    close();
+    ExploreSettings settings = settings_;
+    settings.seed = seed;
+    if (steps && *steps < 1) throw py::value_error("steps must be 1 or more");
+    if (steps) settings.steps = *steps;
+    ExploreHooks hooks;
+    if (!guest.is_none()) {
+      hooks.guest = [&](const ExploreMoment& moment) {
+        const py::gil_scoped_acquire locked;
+        grid_ = std::make_shared<const LogOddsGrid*>(&moment.grid);
+        const Slice columns = slice_of(moment.grid);
+        const auto look =
+            look_at(moment, columns, {moment.step, 0, {}, {}, score_slice(columns, site_.reachable), 0, 0});
+        const GuestReply reply = reply_from(guest(py::cast(*look)));
+        end_look();
+        return reply;
+      };
+    }
+    hooks.after_step = [&](const ExploreMoment&, const Slice&, const std::vector<ExploreStep>& so_far) {
+      const py::gil_scoped_acquire locked;
+      if (PyErr_CheckSignals() != 0) throw py::error_already_set();
+      if (after_step.is_none()) return true;
+      const py::object answer = after_step(so_far.back().step, scores_of(so_far.back()));
+      return answer.is_none() || answer.cast<bool>();
+    };
+    const Simulator& simulator = ready();
+    const py::gil_scoped_release unlocked;
+    ExploreRun run = explore(simulator, site_, vehicle_, settings, hooks);
+    nlohmann::json summary = summary_of(run, site_, vehicle_);
+    return std::make_unique<PyRun>(PyRun{std::move(run), std::move(summary)});
+  }
+
+  void close() {
+    end_look();
+    world_.reset();
+  }
+
+  const ExploreSite& site() const { return site_; }
+  const Vehicle& vehicle() const { return vehicle_; }
+  const SonarModel& sonar() const { return sonar_; }
+
+ private:
+  const Simulator& ready() {
+    return simulator_.get([&] { return std::make_unique<Simulator>(*scene_, sonar_, noise_, isa_); });
+  }
+  ExploreWorld& open_world() {
+    if (!world_) throw std::runtime_error("the loop is closed: call reset() first");
+    return *world_;
+  }
+  void end_look() {
+    if (grid_) *grid_ = nullptr;
+    grid_.reset();
+  }
+  std::unique_ptr<PyLook> look_at(const ExploreMoment& moment, const Slice& columns, ExploreStep scores) const {
+    return std::make_unique<PyLook>(PyLook{moment.step, moment.step / vehicle_.limits.ping_rate_hz,
+                                           moment.T_world_sonar, moment.T_world_sonar_est, moment.ping, columns,
+                                           std::move(scores), grid_});
+  }
+  GuestReply reply_from(const py::object& answer) const {
+    GuestReply reply;
+    if (answer.is_none()) return reply;
+    if (!py::isinstance<py::dict>(answer)) {
+      throw py::type_error("the guest must return None or a dict with one or more of wanted, map and done");
+    }
+    for (const auto& [key, value] : answer.cast<py::dict>()) {
+      const std::string name = py::str(key).cast<std::string>();
+      if (name == "wanted") {
+        reply.wanted = planar_from(value, "wanted");
+      } else if (name == "map") {
+        const Slice like{site_.truth.frame, std::vector<ColumnState>(site_.truth.columns.size(), ColumnState::unknown)};
+        reply.map = columns_of(value.cast<const LogOddsMap&>(), like, site_.map_frame);
+      } else if (name == "done") {
+        reply.done = value.cast<bool>();
+      } else {
+        throw ConfigError(fmt::format("the guest's answer has the key '{}', which is none of wanted, map, done", name));
+      }
+    }
+    return reply;
+  }
+
+  std::shared_ptr<Scene> scene_;
+  SonarModel sonar_;
+  NoiseProfile noise_;
+  std::string isa_;
+  Vehicle vehicle_;
+  ExploreSettings settings_;
+  ExploreSite site_;
+  PerProcess<Simulator> simulator_;
+  std::optional<ExploreWorld> world_;
+  bool looked_ = false;
+  std::shared_ptr<const LogOddsGrid*> grid_;
+};
+
+std::unique_ptr<PyLoop> make_loop(const py::object& scene, const py::object& sonar, const py::object& noise,
+                                  const std::string& filter, const std::string& model, double threshold, double p_free,
+                                  double p_occupied, double range_max_m, std::optional<double> resolution_m,
+                                  const py::object& start, double radius_m, double height_m, double margin_m,
+                                  double speed_mps, double turn_rate_degps, double ping_rate_hz, double drift_m,
+                                  int steps, const std::string& isa) {
+  for (const double v : {range_max_m, radius_m, height_m, speed_mps, turn_rate_degps, ping_rate_hz}) {
+    if (!(v > 0 && std::isfinite(v))) {
+      throw py::value_error(
+          "range_max_m, radius_m, height_m, speed_mps, turn_rate_degps and ping_rate_hz must be above 0");
+    }
+  }
+  if (!(margin_m >= 0 && drift_m >= 0 && std::isfinite(margin_m + drift_m)) || steps < 1) {
+    throw py::value_error("margin_m and drift_m must not be negative, steps at least 1");
+  }
+  ExploreChoice choice;
+  choice.filter = filter;
+  choice.model = model;
+  choice.threshold = threshold;
+  choice.p_free = p_free;
+  choice.p_occupied = p_occupied;
+  choice.steps = steps;
+  SiteRequest request;
+  request.resolution_m = resolution_m;
+  if (!start.is_none()) request.start = pose_from(start, "start");
+  Vehicle vehicle{radius_m, height_m, margin_m, {speed_mps, radians(turn_rate_degps), ping_rate_hz}};
+  RangeWindow window;
+  window.range_max_m = range_max_m;
+  const SonarModel model_of_sonar =
+      py::isinstance<SonarModel>(sonar) ? sonar.cast<SonarModel>() : load_sonar(source_from(sonar, "sonar"), window);
+  std::optional<Drift> drift;
+  if (drift_m > 0) drift = Drift{drift_m, 1200};
+  auto place = made<std::shared_ptr<Scene>>(scene);
+  auto profile = made<NoiseProfile>(noise);
+  const py::gil_scoped_release unlocked;
+  return std::make_unique<PyLoop>(std::move(place), model_of_sonar, std::move(profile), choice, vehicle, request, drift,
+                                  isa);
+}
+
+void bind_look(py::module_& m) {
+  py::class_<PyLook>(m, "Look", "A ping that was mapped, and what the vehicle knows by then.")
+      .def_readonly("step", &PyLook::step)
+      .def_readonly("time_s", &PyLook::time_s, "Of the simulated clock.")
+      .def_property_readonly(
+          "raw", [](const py::object& self) { return view_of(self.cast<const PyLook&>().ping.raw, self); },
+          "uint8 [bins, beams].")
+      .def_property_readonly(
+          "filtered", [](const py::object& self) { return view_of(self.cast<const PyLook&>().ping.filtered, self); },
+          "float32 [bins, beams], 0..255: what the mapper got.")
+      .def_property_readonly(
+          "pose_est", [](const PyLook& l) { return matrix_of(l.T_world_sonar_est); },
+          "Where the vehicle believes to be, float64 [4, 4].")
+      .def_property_readonly(
+          "pose", [](const PyLook& l) { return matrix_of(l.T_world_sonar); },
+          "Where it is: for judges, not for planners. float64 [4, 4].")
+      .def_property_readonly(
+          "columns", [](const PyLook& l) { return columns_array(l.columns); },
+          "uint8 [y, x]: 0 unknown, 1 free, 2 occupied, at the vehicle's depth.")
+      .def_property_readonly(
+          "scores", [](const PyLook& l) { return scores_of(l.scores); },
+          "dict: coverage, boundary_found, fpr, fnr of the map; clearance_m, path_m of the way.")
+      .def(
+          "map",
+          [](const PyLook& l) {
+            if (*l.grid == nullptr) throw std::runtime_error("the vehicle has moved on: ask for the map before");
+            return std::make_unique<LogOddsMap>(dense_map(**l.grid));
+          },
+          "A copy of the map. Raises RuntimeError once the vehicle has moved on.");
+}
+
+void bind_run(py::module_& m) {
+  py::class_<PyRun>(m, "Run", "How a closed loop went.")
+      .def_property_readonly(
+          "end", [](const PyRun& r) { return std::string(name_of(r.run.end)); },
+          "all_steps, explored, plugin_done, aground or stopped.")
+      .def_property_readonly(
+          "steps",
+          [](const PyRun& r) {
+            py::list steps;
+            std::istringstream lines(steps_jsonl(r.run));
+            for (std::string line; std::getline(lines, line);) steps.append(from_json(line));
+            return steps;
+          },
+          "List of dicts, one a ping; the keys are those of steps.jsonl.")
+      .def_property_readonly("summary", [](const PyRun& r) { return from_json(r.summary.dump()); })
+      .def_property_readonly(
+          "columns", [](const PyRun& r) { return columns_array(r.run.map); },
+          "uint8 [y, x]: what was scored last; 0 unknown, 1 free, 2 occupied.")
+      .def(
+          "map", [](const PyRun& r) { return std::make_unique<LogOddsMap>(dense_map(r.run.grid)); },
+          "Our mapper's map.");
+}
+
+}  // namespace
+
+void bind_loop(py::module_& m) {
+  bind_look(m);
+  bind_run(m);
+  const ExploreChoice choice;
+  const Vehicle vehicle;
+  py::class_<PyLoop>(
+      m, "ClosedLoop",
+      "A vehicle with a sonar in a place: ping, filter, map, move. Drive it by look() and move(), or let\n"
+      "explore() do it. What `ensonify explore` does, with the same numbers.")
+      .def(py::init(&make_loop), py::arg("scene"), py::kw_only(), py::arg("sonar") = choice.sonar,
+           py::arg("noise") = choice.noise, py::arg("filter") = choice.filter, py::arg("model") = choice.model,
+           py::arg("threshold") = choice.threshold, py::arg("p_free") = choice.p_free,
+           py::arg("p_occupied") = choice.p_occupied, py::arg("range_max_m") = choice.range_max_m,
+           py::arg("resolution_m") = py::none(), py::arg("start") = py::none(), py::arg("radius_m") = vehicle.radius_m,
+           py::arg("height_m") = vehicle.height_m, py::arg("margin_m") = vehicle.margin_m,
+           py::arg("speed_mps") = vehicle.limits.speed_mps, py::arg("turn_rate_degps") = 30,
+           py::arg("ping_rate_hz") = vehicle.limits.ping_rate_hz, py::arg("drift_m") = 0,
+           py::arg("steps") = choice.steps, py::arg("isa") = default_isa,
+           "As the options of `ensonify explore` (docs/explore.md); range_max_m counts where `sonar` is no Sonar.\n"
+           "Raises ConfigError, ValueError.")
+      .def("reset", &PyLoop::reset, py::arg("seed") = 0, "Back to the start, with an empty map.")
+      .def("look", &PyLoop::look,
+           "Pings, filters and maps. Raises RuntimeError before reset(), and twice in one place.")
+      .def("move", &PyLoop::move, py::arg("wanted"),
+           "To (x, y, yaw), metres and radians, as the vehicle believes, as far as a step's limits allow.")
+      .def("explore", &PyLoop::explore_with, py::arg("guest") = py::none(), py::kw_only(),
+           py::arg("steps") = py::none(), py::arg("seed") = 0, py::arg("after_step") = py::none(),
+           "The whole loop. `guest(look)` is your mapper or planner: it returns None, or a dict with one or more of\n"
+           "wanted (x, y, yaw), map (a Map, to be scored and planned on) and done; the rest ours do.\n"
+           "`after_step(step, scores)` ends the run by returning False. Raises what they raise, and KeyboardInterrupt.")
+      .def("close", &PyLoop::close, "Ends what reset() began.")
+      .def_property_readonly("sonar", &PyLoop::sonar)
+      .def_property_readonly("start", [](const PyLoop& l) { return matrix_of(l.site().start); })
+      .def_property_readonly(
+          "steps_m_rad",
+          [](const PyLoop& l) { return py::make_tuple(l.vehicle().limits.step_m(), l.vehicle().limits.step_rad()); },
+          "How far and how much it moves and turns in a step at most.")
+      .def_property_readonly(
+          "columns_origin_m",
+          [](const PyLoop& l) {
+            return py::make_tuple(l.site().truth.frame.origin_m.x(), l.site().truth.frame.origin_m.y());
+          },
+          "Least corner of columns [0, 0].")
+      .def_property_readonly("resolution_m", [](const PyLoop& l) { return l.site().truth.frame.resolution_m; });
+}
+
+}  // namespace ensonify::python

@@ -45,6 +45,14 @@ requires std::is_enum_v<Choice> std::string text_of(Choice choice) {
   return choice_names(choice)[static_cast<std::size_t>(choice)];
 }
 
+/// Read back, the same value: not rounded for readers.
+template <typename Value>
+std::string exact_text_of(const Value& value) {
+  if constexpr (std::is_same_v<Value, double>) return fmt::format("{}", value);
+  if constexpr (std::is_same_v<Value, std::optional<double>>) return value ? fmt::format("{}", *value) : "";
+  return text_of(value);
+}
+
 bool parse(const std::string& text, const Limits& limits, double& value) {
   const auto number = parse_number(text);
   if (!number || *number < limits.low || *number > limits.high) return false;
@@ -183,7 +191,7 @@ std::vector<std::pair<std::string, std::string>> parameter_values(const FilterSt
   std::visit(
       [&](const auto& m) {
         for_parameters(m, [&](const auto& p, const auto& value) {
-          if (std::string text = text_of(value); !text.empty()) values.emplace_back(p.name, std::move(text));
+          if (std::string text = exact_text_of(value); !text.empty()) values.emplace_back(p.name, std::move(text));
         });
       },
       step.method);

@@ -33,8 +33,8 @@ GreyImage grey_from(const py::handle& object, const char* what) {
 
 Pose pose_from(const py::handle& object, const char* what) {
   using Matrix = py::array_t<double, py::array::c_style | py::array::forcecast>;
-  const Matrix matrix = Matrix::ensure(object);
-  if (!matrix) {
+  const Matrix matrix = object.is_none() ? Matrix() : Matrix::ensure(object);
+  if (!matrix || object.is_none()) {
     PyErr_Clear();
     throw py::type_error(
         fmt::format("{} must be a 4 x 4 matrix (ensonify.pose makes one), not {}", what, type_name(object)));
@@ -113,8 +113,6 @@ void bind_core(py::module_& m) {
   // Half of a ping's time is the kernel's otherwise. Who has told the allocator what to do is left alone.
   if (!std::getenv("MALLOC_MMAP_THRESHOLD_") && !std::getenv("MALLOC_TRIM_THRESHOLD_")) keep_freed_pages();
 
-  // The last registered is tried first: derived types after their base.
-  py::register_exception<Error>(m, "Error", PyExc_RuntimeError);
   py::register_exception<ConfigError>(m, "ConfigError", PyExc_ValueError).doc() =
       "An argument or a configuration value breaks its rule. A ValueError.";
   py::register_exception<DataError>(m, "DataError", PyExc_RuntimeError).doc() =

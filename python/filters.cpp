@@ -11,8 +11,13 @@
 namespace ensonify::python {
 namespace {
 
+void refuse_parameters(const py::kwargs& parameters) {
+  if (!parameters.empty()) throw py::type_error("parameters go with the name of a method; give a chain's in its steps");
+}
+
 FilterChain chain_from(const py::object& source, const py::kwargs& parameters) {
   if (py::isinstance<py::list>(source)) {
+    refuse_parameters(parameters);
     py::dict whole;
     whole["name"] = "steps";
     whole["steps"] = source;
@@ -24,9 +29,7 @@ FilterChain chain_from(const py::object& source, const py::kwargs& parameters) {
                       : *name == "none" ? FilterChain{"none", {}}
                                         : find_filter(*name);
   if (parameters.empty()) return chain;
-  if (chain.steps.size() != 1 || name == nullptr) {
-    throw py::type_error("parameters go with the name of a method; give a chain's in its steps");
-  }
+  if (chain.steps.size() != 1 || name == nullptr) refuse_parameters(parameters);
   for (const auto& [key, value] : parameters) {
     assign_parameter(chain.steps.front(),
                      fmt::format("{}={}", py::str(key).cast<std::string>(), py::str(value).cast<std::string>()));

@@ -5,6 +5,7 @@ Both work with torch.utils.data.DataLoader and its workers, and without torch. A
 makes of it what your training wants.
 """
 
+import importlib
 import os
 import typing
 
@@ -12,13 +13,13 @@ import numpy
 
 from ._ensonify import ConfigError, Dataset, Recipe, set_threads
 
+_torch_data: typing.Any = None
+_Iterable: typing.Any = object
 try:
-    import torch.utils.data as _torch_data
-
-    _Iterable: typing.Any = _torch_data.IterableDataset
+    _torch_data = importlib.import_module("torch.utils.data")
+    _Iterable = _torch_data.IterableDataset
 except ImportError:
-    _torch_data = None  # type: ignore[assignment]
-    _Iterable = object
+    pass
 
 Sample = typing.Dict[str, typing.Any]
 Transform = typing.Callable[[Sample], typing.Any]
@@ -62,7 +63,7 @@ class FrameDataset:
         sample: Sample = self._dataset.images(self.split, index, list(self.fields))
         info = self._dataset.info(self.split, index)
         sample["pose"] = numpy.array(info["T_world_sonar"], dtype=numpy.float64).reshape(4, 4)
-        sample["place"] = info["scene"]
+        sample["place"] = info["place"]
         sample["index"] = index
         return self.transform(sample) if self.transform else sample
 
@@ -120,7 +121,7 @@ class EndlessFrames(_Iterable):  # type: ignore[misc]
 
     def __iter__(self) -> typing.Iterator[typing.Any]:
         first, step = 0, 1
-        worker: typing.Any = _torch_data.get_worker_info() if _torch_data else None  # type: ignore[no-untyped-call]
+        worker = _torch_data.get_worker_info() if _torch_data else None
         if worker is not None:
             first, step = worker.id, worker.num_workers
             set_threads(max(1, (os.cpu_count() or 1) // worker.num_workers))

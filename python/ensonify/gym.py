@@ -7,6 +7,7 @@
 Works without gymnasium; where it is installed, ExploreEnv is a gymnasium.Env with spaces.
 """
 
+import importlib
 import math
 import typing
 
@@ -15,13 +16,13 @@ import numpy.typing
 
 from ._ensonify import ClosedLoop, Look
 
+_gymnasium: typing.Any = None
+_Env: typing.Any = object
 try:
-    import gymnasium as _gymnasium  # type: ignore[import]
-
-    _Env: typing.Any = _gymnasium.Env
+    _gymnasium = importlib.import_module("gymnasium")
+    _Env = _gymnasium.Env
 except ImportError:
-    _gymnasium = None
-    _Env = object
+    pass
 
 Observation = typing.Dict[str, numpy.typing.NDArray[typing.Any]]
 Info = typing.Dict[str, typing.Any]

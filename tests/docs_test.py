@@ -36,6 +36,8 @@ def examples(text):
         named = re.match(r"# file: (\S+)\n", block)
         if kind in ("yaml", "python") and named:
             yield "write", (named[1], block)
+        elif kind == "python":
+            yield "python", block
 
 
 class DocsTest(unittest.TestCase):
@@ -49,7 +51,9 @@ class DocsTest(unittest.TestCase):
             if kind == "write":
                 (folder / content[0]).write_text(content[1])
                 continue
-            done = subprocess.run(["bash", "-euo", "pipefail", "-c", content], cwd=folder, env=environment, text=True,
+            command = ["bash", "-euo", "pipefail", "-c", content] if kind == "run" else ["/usr/bin/python3", "-B", "-c", content]
+            python = {"PYTHONPATH": str(arguments.program.parent / "python"), **({"LD_PRELOAD": arguments.preload} if arguments.preload else {})}
+            done = subprocess.run(command, cwd=folder, env={**environment, **(python if kind == "python" else {})}, text=True,
                                   capture_output=True, stdin=subprocess.DEVNULL, timeout=300 * float(os.environ.get("ENSONIFY_TEST_PATIENCE", 1)))
             if done.returncode != 0:
                 failures.append(f"$ {content}\n{done.stdout}{done.stderr}")
@@ -69,13 +73,13 @@ class DocsTest(unittest.TestCase):
         count = 0
         for document in documents():
             text = document.read_text()
-            count += sum(kind == "run" for kind, _ in examples(text))
+            count += sum(kind in ("run", "python") for kind, _ in examples(text))
             with self.subTest(document.name), tempfile.TemporaryDirectory(prefix="ensonify_docs_") as folder:
                 self.assertEqual(self.run_examples(text, pathlib.Path(folder)), [])
         self.assertGreater(count, 15)
 
     def test_a_command_that_does_not_work_is_found(self):
-        text = "```sh\nensonify sonar list\nensonify sonar lost\n```\n"
+        text = "```sh\nensonify sonar list\nensonify sonar lost\n```\n```python\nimport ensonify\nensonify.Scene\n```\n"
         with tempfile.TemporaryDirectory(prefix="ensonify_docs_") as folder:
             failures = self.run_examples(text, pathlib.Path(folder))
         self.assertEqual(len(failures), 1)
@@ -115,6 +119,7 @@ class DocsTest(unittest.TestCase):
 if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("--program", type=pathlib.Path, required=True)
+    parser.add_argument("--preload", help="library that Python needs before a sanitized module")
     arguments, rest = parser.parse_known_args()
     arguments.program = arguments.program.resolve()
     unittest.main(argv=["docs_test", *rest], verbosity=2)

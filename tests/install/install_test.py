@@ -37,6 +37,16 @@ class InstallTest(unittest.TestCase):
     def tearDownClass(cls):
         shutil.rmtree(cls.folder)
 
+    def test_the_installed_module_is_imported_and_finds_its_data(self):
+        folder = next(self.prefix.rglob("_ensonify*.so")).parent.parent
+        self.assertEqual(folder, self.prefix / "lib/python3.11/dist-packages")
+        said = run("env", f"PYTHONPATH={folder}", "/usr/bin/python3", "-c", "import ensonify, ensonify.data, ensonify.gym;"
+                   "print(ensonify.__file__); print(ensonify.Simulator('test_tank', 'holoocean').ping(ensonify.pose(1, 0, -1.5)))",
+                   cwd="/")
+        self.assertIn(str(self.prefix), said)
+        self.assertIn("ensonify.Ping", said)
+        self.assertTrue((folder / "ensonify/_ensonify.pyi").is_file())
+
     def test_a_consumer_builds_and_pings_against_the_installed_package_alone(self):
         consumer = self.folder / "consumer"
         shutil.copytree(arguments.source / "tests" / "install", consumer)

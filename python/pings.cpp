@@ -149,7 +149,11 @@ void bind_ping(py::module_& m) {
       .def_readonly("time_s", &PyFrame::time_s, "None for random poses.")
       .def_property_readonly(
           "pose_est", [](const PyFrame& f) { return matrix_of(f.T_world_sonar_est); },
-          "The pose that dead reckoning believes, float64 [4, 4].");
+          "The pose that dead reckoning believes, float64 [4, 4].")
+      .def("__repr__", [](const PyFrame& f) {
+        return fmt::format("<ensonify.Frame {} of {} in {}: {} x {} of {}>", f.number, f.split, f.place,
+                           f.images.mask.rows(), f.images.mask.columns(), f.sonar.name);
+      });
 }
 
 }  // namespace

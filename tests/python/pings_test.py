@@ -29,6 +29,7 @@ class SameBitsAsTheProgram(ModuleTest):
         out = self.generate("by_program", recipe=self.recipe(train=6, test=4))
         recipe = ensonify.Recipe(self.folder / "small.yaml")
         self.assertEqual((len(recipe), recipe.splits), (10, {"train": 6, "test": 4}))
+        self.assertRegex(repr(recipe.make_frame(7)), "Frame 1 of test in block: 128 x 48 of small")
         program = ensonify.open_dataset(out)
         for index, (split, number) in enumerate([("train", n) for n in range(6)] + [("test", n) for n in range(4)]):
             frame = recipe.make_frame(index)

@@ -41,6 +41,7 @@ struct ExploreMoment {
   const Pose& T_world_sonar_est;
   const ExplorePing& ping;
   const LogOddsGrid& grid;
+  double clearance_m = 0, path_m = 0;  ///< as in ExploreStep
 };
 
 /// What commands and Python take unless told otherwise.
@@ -80,7 +81,7 @@ class ExploreWorld {
   void move(const PlanarPose& wanted);
 
   /// Of the last look.
-  ExploreMoment moment() const { return {step_, truly_, believed_, ping_, grid_}; }
+  ExploreMoment moment() const { return {step_, truly_, believed_, ping_, grid_, clearance_m_, path_m_}; }
   const Slice& map() const { return map_; }
   /// The same, scored on `map`: ours, or a guest's.
   ExploreStep scored(const Slice& map) const;

@@ -110,7 +110,7 @@ void end_threads() {
 }  // namespace
 
 void bind_core(py::module_& m) {
-  // Half of a ping's time is the kernel's otherwise. Who has told the allocator what to do is left alone.
+  // Up to half of a ping's time is the kernel's otherwise. Who has told the allocator what to do is left alone.
   if (!std::getenv("MALLOC_MMAP_THRESHOLD_") && !std::getenv("MALLOC_TRIM_THRESHOLD_")) keep_freed_pages();
 
   py::register_exception<ConfigError>(m, "ConfigError", PyExc_ValueError).doc() =

@@ -25,9 +25,7 @@ FilterChain chain_from(const py::object& source, const py::kwargs& parameters) {
   }
   const ConfigSource from = source_from(source, "filter");
   const auto* name = std::get_if<std::string>(&from);
-  FilterChain chain = name == nullptr   ? load_filter_chain(from)
-                      : *name == "none" ? FilterChain{"none", {}}
-                                        : find_filter(*name);
+  FilterChain chain = name == nullptr ? load_filter_chain(from) : find_filter_or_none(*name);
   if (parameters.empty()) return chain;
   if (chain.steps.size() != 1 || name == nullptr) refuse_parameters(parameters);
   for (const auto& [key, value] : parameters) {

@@ -34,12 +34,11 @@ class PyLoop {
     settings_.drift = drift;
     check_noise(noise_, sonar_);
   }
-  ~PyLoop() { end_look(); }
   PyLoop(const PyLoop&) = delete;
   PyLoop& operator=(const PyLoop&) = delete;
 
   void reset(std::uint64_t seed) {
-    end_look();
+    close();
     settings_.seed = seed;
     world_.emplace(ready(), site_, vehicle_, settings_);
     looked_ = false;
@@ -47,21 +46,22 @@ class PyLoop {
 
   std::unique_ptr<PyLook> look() {
     ExploreWorld& world = open_world();
+    const Work work(busy_);
     if (looked_) throw std::runtime_error("the vehicle has looked from here: call move() before the next look()");
     {
       const py::gil_scoped_release unlocked;
       world.look();
     }
     looked_ = true;
-    grid_ = std::make_shared<const LogOddsGrid*>(&world.moment().grid);
-    return look_at(world.moment(), world.map(), world.scored(world.map()));
+    lent_.emplace(world.moment().grid);
+    return look_at(world.moment(), world.map(), *lent_);
   }
 
   void move(const py::object& wanted) {
     ExploreWorld& world = open_world();
     if (!looked_) throw std::runtime_error("call look() first: what the vehicle has seen says where it may go");
     const PlanarPose to = planar_from(wanted, "wanted");
-    end_look();
+    lent_.reset();
     world.move(limited_step(world.at(), to, vehicle_.limits));
     looked_ = false;
   }
@@ -69,6 +69,7 @@ class PyLoop {
   std::unique_ptr<PyRun> explore_with(const py::object& guest, std::optional<int> steps, std::uint64_t seed,
                                       const py::object& after_step) {
     close();
+    const Work work(busy_);
     ExploreSettings settings = settings_;
     settings.seed = seed;
     if (steps && *steps < 1) throw py::value_error("steps must be 1 or more");
@@ -77,13 +78,8 @@ class PyLoop {
     if (!guest.is_none()) {
       hooks.guest = [&](const ExploreMoment& moment) {
         const py::gil_scoped_acquire locked;
-        grid_ = std::make_shared<const LogOddsGrid*>(&moment.grid);
-        const Slice columns = slice_of(moment.grid);
-        const auto look =
-            look_at(moment, columns, {moment.step, 0, {}, {}, score_slice(columns, site_.reachable), 0, 0});
-        const GuestReply reply = reply_from(guest(py::cast(*look)));
-        end_look();
-        return reply;
+        const LentGrid lent(moment.grid);
+        return reply_from(guest(py::cast(look_at(moment, slice_of(moment.grid), lent))));
       };
     }
     hooks.after_step = [&](const ExploreMoment&, const Slice&, const std::vector<ExploreStep>& so_far) {
@@ -101,7 +97,8 @@ class PyLoop {
   }
 
   void close() {
-    end_look();
+    refuse_while(busy_);
+    lent_.reset();
     world_.reset();
   }
 
@@ -113,18 +110,40 @@ class PyLoop {
   const Simulator& ready() {
     return simulator_.get([&] { return std::make_unique<Simulator>(*scene_, sonar_, noise_, isa_); });
   }
+  static void refuse_while(bool busy) {
+    if (busy) throw std::runtime_error("the loop is at work, in another thread or for the guest that asks");
+  }
+  /// Set and read under the interpreter's lock.
+  class Work {
+   public:
+    explicit Work(bool& busy) : busy_(busy) {
+      refuse_while(busy);
+      busy = true;
+    }
+    ~Work() { busy_ = false; }
+    Work(const Work&) = delete;
+    Work& operator=(const Work&) = delete;
+
+   private:
+    bool& busy_;
+  };
+
   ExploreWorld& open_world() {
+    refuse_while(busy_);
     if (!world_) throw std::runtime_error("the loop is closed: call reset() first");
     return *world_;
   }
-  void end_look() {
-    if (grid_) *grid_ = nullptr;
-    grid_.reset();
-  }
-  std::unique_ptr<PyLook> look_at(const ExploreMoment& moment, const Slice& columns, ExploreStep scores) const {
-    return std::make_unique<PyLook>(PyLook{moment.step, moment.step / vehicle_.limits.ping_rate_hz,
-                                           moment.T_world_sonar, moment.T_world_sonar_est, moment.ping, columns,
-                                           std::move(scores), grid_});
+  std::unique_ptr<PyLook> look_at(const ExploreMoment& moment, const Slice& columns, const LentGrid& lent) const {
+    const double time_s = moment.step / vehicle_.limits.ping_rate_hz;
+    const ExploreStep scores{moment.step,
+                             time_s,
+                             moment.T_world_sonar,
+                             moment.T_world_sonar_est,
+                             score_slice(columns, site_.reachable),
+                             moment.clearance_m,
+                             moment.path_m};
+    return std::make_unique<PyLook>(PyLook{moment.step, time_s, moment.T_world_sonar, moment.T_world_sonar_est,
+                                           moment.ping, columns, scores, lent.pointer()});
   }
   GuestReply reply_from(const py::object& answer) const {
     GuestReply reply;
@@ -158,7 +177,8 @@ class PyLoop {
   PerProcess<Simulator> simulator_;
   std::optional<ExploreWorld> world_;
   bool looked_ = false;
-  std::shared_ptr<const LogOddsGrid*> grid_;
+  std::optional<LentGrid> lent_;  ///< after world_, which holds the grid
+  bool busy_ = false;
 };
 
 std::unique_ptr<PyLoop> make_loop(const py::object& scene, const py::object& sonar, const py::object& noise,

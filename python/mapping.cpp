@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <mutex>
 #include <optional>
 
 #include "ensonify/mapping/insert_scan.hpp"
@@ -19,8 +20,9 @@ struct Mapper {
   InverseModel model;
   double threshold;
   LogOddsGrid grid;
-  MarkBox<Mark> scratch;
-  ScanScratch scan_scratch;
+  MarkBox<Mark> scratch = {};
+  ScanScratch scan_scratch = {};
+  std::mutex mutex = {};  ///< threads may share a mapper: pings then enter one after the other
 };
 
 GridFrame frame_from(const py::object& bounds_m, double resolution_m) {
@@ -42,7 +44,7 @@ std::unique_ptr<Mapper> make_mapper(const py::object& bounds_m, double resolutio
   std::visit([&](auto& any) { any.step = step; }, inverse);
   require_valid(inverse);
   if (!std::isfinite(threshold)) throw py::value_error("threshold must be finite");
-  return std::make_unique<Mapper>(Mapper{inverse, threshold, LogOddsGrid(frame_from(bounds_m, resolution_m)), {}, {}});
+  return std::unique_ptr<Mapper>(new Mapper{inverse, threshold, LogOddsGrid(frame_from(bounds_m, resolution_m))});
 }
 
 void add(Mapper& mapper, const py::object& image, const SonarModel& sonar, const py::object& pose,
@@ -51,6 +53,7 @@ void add(Mapper& mapper, const py::object& image, const SonarModel& sonar, const
   if (!elevation_rad.is_none())
     ping.elevation_rad = image_from(require_array<float>(elevation_rad, "elevation_rad", 2));
   const py::gil_scoped_release unlocked;
+  const std::lock_guard alone(mapper.mutex);
   integrate_ping(ping, mapper.threshold, mapper.model, mapper.grid, mapper.scratch);
 }
 
@@ -65,6 +68,7 @@ std::size_t add_scan(Mapper& mapper, const py::object& origin_m, const py::objec
   if (max_range_m) options.max_range_m = *max_range_m;
   options.step = step_of(mapper.model);
   const py::gil_scoped_release unlocked;
+  const std::lock_guard alone(mapper.mutex);
   return insert_scan(scan, options, mapper.grid, mapper.scan_scratch);
 }
 
@@ -88,8 +92,9 @@ void bind_mapping(py::module_& m) {
            "cell along every ray; else Bresenham's line, one for each end cell.")
       .def(
           "map",
-          [](const Mapper& mapper) {
+          [](Mapper& mapper) {
             const py::gil_scoped_release unlocked;
+            const std::lock_guard alone(mapper.mutex);
             return std::make_unique<LogOddsMap>(dense_map(mapper.grid));
           },
           "A copy of the map as it is.");

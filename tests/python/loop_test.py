@@ -65,6 +65,30 @@ class Loop(ModuleTest):
             kept[0].map()
         self.assertEqual(kept[0].raw.shape, (512, 512))
 
+        def keeps_and_fails(look):
+            kept.append(look)
+            raise KeyError("mine")
+
+        with self.assertRaises(KeyError):
+            loop.explore(keeps_and_fails, steps=2)
+        with self.assertRaisesRegex(RuntimeError, "moved on"):
+            kept[-1].map()
+
+    def test_what_a_guest_sees_of_the_way_is_what_the_run_tells(self):
+        seen = []
+        run = ensonify.ClosedLoop("test_tank").explore(lambda look: seen.append(look.scores), steps=4)
+        for scores, step in zip(seen, run.steps, strict=True):
+            for key in ("coverage", "clearance_m", "path_m"):
+                self.assertAlmostEqual(scores[key], step[key], 5, key)
+        self.assertGreater(seen[-1]["path_m"], 0)
+
+    def test_a_loop_at_work_is_left_alone(self):
+        loop = ensonify.ClosedLoop("test_tank")
+        for meddle in (loop.reset, loop.close, loop.look, lambda: loop.explore(steps=1)):
+            with self.assertRaisesRegex(RuntimeError, "at work|reset"):
+                loop.explore(lambda look, m=meddle: m(), steps=2)
+        self.assertEqual(loop.explore(steps=2).end, "all_steps")
+
     def test_ctrl_c_ends_it(self):
         loop = ensonify.ClosedLoop("test_tank")
         steps = []

@@ -55,7 +55,7 @@ class Stubs(ModuleTest):
         self.assertEqual(done.returncode, 0, done.stdout)
         done = self.mypy("import ensonify\n" + "\n".join(WRONG) + "\n")
         for line, (code, kind) in enumerate(WRONG.items(), 2):
-            self.assertRegex(done.stdout, rf"user\.py:{line}: error: .*\[{kind}\]|user\.py:{line}: error:", code)
+            self.assertRegex(done.stdout, rf"user\.py:{line}: error: .*\[{kind}\]", code)
 
     @unittest.skipUnless(shutil.which("/usr/bin/mypy"), "mypy is not installed")
     def test_the_package_itself_passes_strictly(self):

@@ -61,7 +61,7 @@ class Wrong(ModuleTest):
             self.refuse(ValueError, "C-contiguous", lambda: function(GREY.T))
         self.refuse(ensonify.DataError, "finite", lambda: ensonify.Filter("lee")(numpy.full((8, 8), numpy.nan, "f4")))
         self.refuse(ValueError, "one size", lambda: ensonify.score_mask(GREY, GREY[:8]))
-        self.refuse(ensonify.DataError, "", lambda: ensonify.Mapper([[-1, -1, -1], [1, 1, 1]], 0.1).add(GREY, self.sonar(), POSE))
+        self.refuse(ensonify.DataError, "16", lambda: ensonify.Mapper([[-1, -1, -1], [1, 1, 1]], 0.1).add(GREY, self.sonar(), POSE))
         self.refuse(ValueError, "128 bins x 48 beams", lambda: ensonify.fan_view(GREY, self.sonar()))
         self.refuse(ValueError, "height, width, 3", lambda: ensonify.save_png(self.folder / "a.png", numpy.zeros((4, 4, 4), "u1")))
 
@@ -84,12 +84,12 @@ class Wrong(ModuleTest):
                 self.refuse(kind, fragment, lambda a=arguments: ensonify.Grid(*a))
         grid = ensonify.Grid(cells, [0, 0, 0], 0.1)
         self.refuse(ensonify.ConfigError, "extension|format", lambda: grid.save(self.folder / "a.xyz"))
-        self.refuse(ensonify.DataError, "", lambda: ensonify.Grid.load(self.folder / "none.npz"))
+        self.refuse(ensonify.DataError, "no such file", lambda: ensonify.Grid.load(self.folder / "none.npz"))
         self.refuse(ensonify.ConfigError, "observable", lambda: ensonify.score_map(ensonify.Map(cells.astype("f4"), [0, 0, 0], 0.1), grid))
         self.refuse(ValueError, r"\[2, 3\]", lambda: ensonify.Mapper([0, 0, 0], 0.1))
         self.refuse(ensonify.ConfigError, "cells", lambda: ensonify.Mapper([[-1e4] * 3, [1e4] * 3], 0.01))
         self.refuse(ensonify.ConfigError, "carve", lambda: ensonify.Mapper([[0] * 3, [1] * 3], 0.1, model="crave"))
-        self.refuse(ensonify.ConfigError, "", lambda: ensonify.Mapper([[0] * 3, [1] * 3], 0.1, p_free=0.7))
+        self.refuse(ensonify.ConfigError, "free|negative|below", lambda: ensonify.Mapper([[0] * 3, [1] * 3], 0.1, p_free=0.7))
 
     def test_unknown_names_get_the_nearest(self):
         for call, nearest in [(lambda: ensonify.Scene("test_tonk"), "test_tank"), (lambda: ensonify.Sonar("oculus_m1200d_hg"), "oculus_m1200d_hf"),

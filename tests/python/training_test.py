@@ -161,6 +161,21 @@ class TrainingTest(unittest.TestCase):
         self.assertIn("recipe small", json.loads((self.folder / "of_recipe/model.json").read_text())["training"]["data"])
         self.refuse(2, ["ngf 1", "ngf 2"], "set", "--out", "x", "--from", "of_set/checkpoint.pt", "--ngf", "2")
 
+    def test_the_program_runs_an_untrained_network(self):
+        """Its biases are all alike, which OpenCV could not read."""
+        write_pairs(self.folder / "pairs", count=1)
+        script = ("import pathlib; from ensonify.training import export, networks\n"
+                  "for name in networks.NAMES:\n"
+                  "    kind = networks.NetworkKind(name, 1)\n"
+                  "    pathlib.Path(name).mkdir()\n"
+                  "    export.write_model(pathlib.Path(name), networks.make_network(kind), kind, threshold=0.5, license='none',\n"
+                  "                       metrics={}, training={})\n")
+        environment = {**os.environ, "PYTHONPATH": str(arguments.build / "python")}
+        subprocess.run(["/usr/bin/python3", "-c", script], cwd=self.folder, env=environment, check=True)
+        for name in ("unet", "pix2pix"):
+            subprocess.run([arguments.program, "filter", name, "pairs/raw/pier_000.png", "mask.png",
+                            "--set", f"model={name}/model.onnx"], cwd=self.folder, check=True, capture_output=True)
+
     def test_what_is_wrong_is_named(self):
         write_pairs(self.folder / "pairs", count=1)
         (self.folder / "pairs/mask/quay_000.png").rename(self.folder / "kept.png")

@@ -17,7 +17,7 @@ OPSET = 11
 
 def onnx_bytes(network: UNet, kind: NetworkKind) -> bytes:
     """Input `image` float32 [1, 1, bins, beams] on the input range, output `probability` of the same shape."""
-    used = folded(network, kind).cpu()
+    used = folded(network, kind)
     _tell_apart(list(used.parameters()))
     example = torch.zeros(1, 1, 2**kind.depth, 2**kind.depth)
     file = io.BytesIO()

@@ -4,6 +4,7 @@ Images are float32 [batch, 1, bins, beams]; both sides a multiple of 2**depth. `
 `pix2pix` (Isola et al. 2017): its tanh lies in -1..1, and (tanh(z) + 1) / 2 = sigmoid(2 z).
 """
 
+import copy
 import dataclasses
 import typing
 
@@ -112,8 +113,9 @@ def make_network(kind: NetworkKind) -> UNet:
 
 
 def folded(network: UNet, kind: NetworkKind) -> nn.Module:
-    """The network that is used: normalisation by the running statistics folded into the weights, no dropout, and the
-    probability of an echo as its output."""
+    """The network that is used, on the CPU: normalisation by the running statistics folded into the weights, no dropout,
+    and the probability of an echo as its output."""
+    network = copy.deepcopy(network).cpu()  # a GPU rounds in other ways
     result = UNet(kind, folded=True)
     with torch.no_grad():
         for i in range(kind.depth):

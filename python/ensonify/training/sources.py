@@ -146,7 +146,7 @@ def _pairs_of(folder: pathlib.Path) -> typing.List[str]:
     return sorted(halves[0])
 
 
-@functools.lru_cache(maxsize=256)
+@functools.lru_cache(maxsize=128)
 def _read_pair(folder: pathlib.Path, name: str) -> Pair:
     raw, mask = _read_png(folder / "raw" / name), _read_png(folder / "mask" / name)
     if raw.shape != mask.shape:

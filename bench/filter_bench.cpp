@@ -106,6 +106,7 @@ int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);
   const auto rivals = python_ms();
   for (const MethodInfo& method : filter_methods()) {
+    if (!method.ready) continue;
     const auto rival = rivals.find(method.name);
     const FilterStep step = make_filter(method.name);
     const double rival_ms = rival == rivals.end() ? 0.0 : rival->second;

@@ -51,27 +51,28 @@ fs::path data_folder() {
 
 fs::path library_folder(const std::string& kind) { return data_folder() / kind / "library"; }
 
-std::vector<std::string> library_names(const std::string& kind) {
+std::vector<std::string> library_names(const std::string& kind, const std::string& extension) {
   std::vector<std::string> names;
   std::error_code no_throw;
   for (const auto& entry : fs::directory_iterator(library_folder(kind), no_throw)) {
-    if (entry.path().extension() == ".yaml") names.push_back(entry.path().stem().string());
+    if (entry.path().extension() == extension) names.push_back(entry.path().stem().string());
   }
   std::sort(names.begin(), names.end());
   return names;
 }
 
-fs::path resolve_name(const std::string& kind, const std::string& path_or_name) {
+fs::path resolve_name(const std::string& kind, const std::string& path_or_name, const std::string& extension) {
   std::error_code no_throw;
   if (fs::is_regular_file(path_or_name, no_throw)) return path_or_name;
-  const std::vector<std::string> names = library_names(kind);
+  const std::vector<std::string> names = library_names(kind, extension);
   if (std::find(names.begin(), names.end(), path_or_name) != names.end()) {
-    return library_folder(kind) / (path_or_name + ".yaml");
+    return library_folder(kind) / (path_or_name + extension);
   }
   const std::string nearest = nearest_word(path_or_name, names);
   throw ConfigError(fmt::format("{}: no such file and no bundled name of {}; {}", path_or_name, kind,
-                                nearest.empty() ? fmt::format("there are {}", fmt::join(names, ", "))
-                                                : fmt::format("did you mean '{}'?", nearest)));
+                                names.empty()     ? "none is bundled"
+                                : nearest.empty() ? fmt::format("there are {}", fmt::join(names, ", "))
+                                                  : fmt::format("did you mean '{}'?", nearest)));
 }
 
 Reader open_config(const std::string& kind, const ConfigSource& source) {

@@ -14,11 +14,12 @@ namespace ensonify {
 /// `kind` is scenes, sensor_models, noise or generators; the files are in <data>/<kind>/library/*.yaml.
 std::filesystem::path library_folder(const std::string& kind);
 
-/// Names (without .yaml) of the bundled files of a kind, sorted.
-std::vector<std::string> library_names(const std::string& kind);
+/// Names (without extension) of the bundled files of a kind, sorted.
+std::vector<std::string> library_names(const std::string& kind, const std::string& extension = ".yaml");
 
 /// A path is taken as it is, a bundled name found in the library; else ConfigError naming the nearest name.
-std::filesystem::path resolve_name(const std::string& kind, const std::string& path_or_name);
+std::filesystem::path resolve_name(const std::string& kind, const std::string& path_or_name,
+                                   const std::string& extension = ".yaml");
 
 /// A configuration in memory: YAML, and so JSON too. `name` stands in messages where a path would; relative paths in it
 /// start from the working folder.

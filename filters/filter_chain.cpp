@@ -51,6 +51,12 @@ void from_log(Image2<float>& image) {
   change_rows(image, [](Eigen::ArrayXf& levels) { levels = (levels / log_scale).exp() - 1.0F; });
 }
 
+/// A model's path in a file starts from the file's folder.
+std::string located(const Reader& reader, const std::string& key, const std::string& value) {
+  const auto beside = reader.folder() / value;
+  return key == "model" && std::filesystem::is_regular_file(beside) ? beside.string() : value;
+}
+
 FilterStep read_step(Reader& reader, const std::string& method) {
   FilterStep step;
   try {
@@ -60,7 +66,7 @@ FilterStep read_step(Reader& reader, const std::string& method) {
   }
   for (const std::string& key : reader.keys()) {
     if (key == "method") continue;
-    const std::string fault = set_parameter(step, key, reader.text(key));
+    const std::string fault = set_parameter(step, key, located(reader, key, reader.text(key)));
     if (!fault.empty()) reader.fail(key, fault);
   }
   try {

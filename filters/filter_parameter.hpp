@@ -5,6 +5,7 @@
 #include <variant>
 
 #include "ensonify/config/reader.hpp"
+#include "ensonify/filters/model_file.hpp"
 
 /// How a method of the filter room lists its parameters: once, beside its struct. Command line, YAML and documentation
 /// go over that list.
@@ -37,7 +38,7 @@ template <typename Method>
 struct FilterParameter {
   const char* name;
   std::variant<double Method::*, std::optional<double> Method::*, int Method::*, WindowSize Method::*,
-               FilterVariant Method::*, WaveletRule Method::*, CfarRule Method::*>
+               FilterVariant Method::*, WaveletRule Method::*, CfarRule Method::*, ModelFile Method::*>
       member;
   const char* about;
   Limits limits = any_number;

@@ -31,6 +31,7 @@ std::string rule_of(double, const Limits& limits) { return limits_rule("a number
 std::string rule_of(const std::optional<double>&, const Limits& limits) { return limits_rule("a number", limits); }
 std::string rule_of(int, const Limits& limits) { return limits_rule("a whole number", limits); }
 std::string rule_of(WindowSize, const Limits& limits) { return limits_rule("an odd number", limits); }
+std::string rule_of(const ModelFile&, const Limits&) { return "a .onnx file or a bundled name"; }
 template <typename Choice>
 requires std::is_enum_v<Choice> std::string rule_of(Choice, const Limits&) {
   return fmt::format("{}", fmt::join(choice_names(Choice{}), " or "));
@@ -40,6 +41,7 @@ std::string text_of(double value) { return fmt::format("{:.6g}", value); }
 std::string text_of(const std::optional<double>& value) { return value ? text_of(*value) : ""; }
 std::string text_of(int value) { return std::to_string(value); }
 std::string text_of(WindowSize window) { return std::to_string(window.pixels); }
+std::string text_of(const ModelFile& model) { return model.name(); }
 template <typename Choice>
 requires std::is_enum_v<Choice> std::string text_of(Choice choice) {
   return choice_names(choice)[static_cast<std::size_t>(choice)];
@@ -75,6 +77,11 @@ bool parse(const std::string& text, const Limits& limits, WindowSize& window) {
   int side = 0;
   if (!parse(text, limits, side) || side % 2 == 0) return false;
   window.pixels = side;
+  return true;
+}
+bool parse(const std::string& text, const Limits&, ModelFile& model) {
+  if (text.empty()) return false;
+  model = ModelFile(text);
   return true;
 }
 template <typename Choice>
@@ -116,13 +123,14 @@ std::string instead(const std::string& word, const std::vector<std::string>& wor
 }  // namespace
 
 MethodInfo method_info(const FilterMethod& method) {
-  MethodInfo info{name_of(method), "", role_of(method), {}};
+  MethodInfo info{name_of(method), "", role_of(method), {}, true};
   std::visit(
       [&](const auto& m) {
         info.source = m.source;
         for_parameters(m, [&](const auto& p, const auto& value) {
           const std::string otherwise = *p.otherwise ? p.otherwise : text_of(value);
           info.parameters.push_back({p.name, otherwise, rule_of(value, p.limits), p.unit, p.about});
+          if constexpr (std::is_same_v<std::decay_t<decltype(value)>, ModelFile>) info.ready = !value.name().empty();
         });
       },
       method);
@@ -177,6 +185,8 @@ void assign_parameter(FilterStep& step, const std::string& assignment) {
 
 void check_filter(const FilterStep& step) {
   if (const auto* diffusion = std::get_if<Anisodiff>(&step.method)) check(*diffusion);
+  if (const auto* network = std::get_if<Unet>(&step.method)) check(*network);
+  if (const auto* network = std::get_if<Pix2Pix>(&step.method)) check(*network);
   const auto check_classes = [](const char* name, double cu, double cmax) {
     if (cmax > cu) return;
     throw ConfigError(fmt::format("{}: cmax = {:g} must be above cu = {:g}", name, cmax, cu));

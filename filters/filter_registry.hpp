@@ -16,6 +16,7 @@ struct MethodInfo {
   std::string name, source;
   FilterRole role;
   std::vector<ParameterInfo> parameters;
+  bool ready = true;  ///< works with its defaults: no parameter must be given
 };
 
 /// Every method with its parameters, in the order of `FilterMethod`.
@@ -32,7 +33,7 @@ std::string set_parameter(FilterStep& step, const std::string& parameter, const 
 /// its rule.
 void assign_parameter(FilterStep& step, const std::string& assignment);
 
-/// Throws ConfigError where parameters do not go together.
+/// Throws ConfigError where parameters do not go together or one is missing, DataError where a model is broken.
 void check_filter(const FilterStep& step);
 
 /// Every parameter and its value, exact: set_parameter() makes the same step of them. Optional ones only where they are set.

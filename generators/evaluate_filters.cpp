@@ -90,7 +90,7 @@ FrameScores judge_truth(const JudgedFrame& frame) {
 std::vector<FilterCandidate> all_candidates(const FilterPreset& tuned) {
   std::vector<FilterCandidate> candidates{{"raw", "", {"raw", {}}}};
   for (const MethodInfo& method : filter_methods()) {
-    if (method.role == FilterRole::finishes || method.name == "threshold") continue;
+    if (method.role == FilterRole::finishes || method.name == "threshold" || !method.ready) continue;
     candidates.push_back({method.name, "paper", {method.name, {make_filter(method.name)}}});
     if (const auto found = tuned.methods.find(method.name); found != tuned.methods.end()) {
       candidates.push_back({method.name, tuned.name, {method.name, {found->second}}});

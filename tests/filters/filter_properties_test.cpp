@@ -83,6 +83,7 @@ RC_GTEST_PROP(FilterProperties, AConstantStaysInTheLogDomain, ()) {
 
 RC_GTEST_PROP(FilterProperties, EveryResultIsFiniteAndOfTheSameSize, ()) {
   for (const MethodInfo& method : filter_methods()) {
+    if (!method.ready) continue;  // learned: its own test
     FilterStep step = make_filter(method.name);
     RC_LOG() << method.name << "\n";
     const Image2<float> image = levels(*sizes());

@@ -1,9 +1,11 @@
 find_package(GTest REQUIRED)
 include(GoogleTest)
+# The property tests draw the same cases in every run of ctest; a test program run by itself draws fresh ones.
 # ensonify_test(core_tests LABELS unit SOURCES core/random_test.cpp LIBRARIES ensonify::core)
 function(ensonify_test name)
   cmake_parse_arguments(arg "" "" "LABELS;SOURCES;LIBRARIES" ${ARGN})
   add_executable(${name} ${arg_SOURCES})
   target_link_libraries(${name} PRIVATE ${arg_LIBRARIES} GTest::gtest GTest::gmock GTest::gtest_main ensonify_flags)
-  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" ENVIRONMENT "ENSONIFY_SOURCE_DIR=${PROJECT_SOURCE_DIR}" DISCOVERY_TIMEOUT 60)
+  target_compile_definitions(${name} PRIVATE ENSONIFY_SOURCE_DIR="${PROJECT_SOURCE_DIR}")
+  gtest_discover_tests(${name} PROPERTIES LABELS "${arg_LABELS}" ENVIRONMENT "RC_PARAMS=seed=2023" DISCOVERY_TIMEOUT 60)
 endfunction()

@@ -3,23 +3,17 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 
 #include "support/pings.hpp"
+#include "support/test_folders.hpp"
 
 namespace ensonify::test {
 namespace {
 
 namespace fs = std::filesystem;
 
-fs::path shared_mesh(const std::string& name) {
-  const char* shared = std::getenv("ENSONIFY_SHARED");
-  const char* source = std::getenv("ENSONIFY_SOURCE_DIR");
-  const fs::path root =
-      shared != nullptr ? fs::path(shared) : fs::path(source != nullptr ? source : ".") / ".." / "shared";
-  return root / "meshes" / name;
-}
+fs::path shared_mesh(const std::string& name) { return shared_folder() / "meshes" / name; }
 
 float nearest_hit_m(const fs::path& mesh, double sonar_z_m) {
   const SonarModel sonar = load_sonar("oculus_m1200d_hf");

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <cstring>
 #include <filesystem>
 #include <map>
@@ -12,6 +11,7 @@
 #include "ensonify/output/grey_file.hpp"
 #include "ensonify/output/npy.hpp"
 #include "ensonify/output/npz.hpp"
+#include "support/test_folders.hpp"
 
 namespace ensonify {
 namespace {
@@ -97,15 +97,12 @@ void compare_folder(const fs::path& goldens, const fs::path& inputs, std::size_t
 }
 
 TEST(FilterGolden, EveryReferenceIsMet) {
-  const fs::path folder = fs::path(std::getenv("ENSONIFY_SOURCE_DIR")) / "tests/filters/golden";
+  const fs::path folder = source_folder() / "tests/filters/golden";
   compare_folder(folder, folder, 4 * references.size());
 }
 
 TEST(FilterGolden, EveryReferenceOfTheWholeSetIsMet) {
-  const char* shared = std::getenv("ENSONIFY_SHARED");
-  const fs::path folder =
-      (shared ? fs::path(shared) : fs::path(std::getenv("ENSONIFY_SOURCE_DIR")).parent_path() / "shared") /
-      "oracles/filters";
+  const fs::path folder = shared_folder() / "oracles/filters";
   if (!fs::is_directory(folder)) GTEST_SKIP() << folder << " is absent; set ENSONIFY_SHARED";
   compare_folder(folder / "golden", folder / "inputs", 8 * references.size());
 }

@@ -3,7 +3,6 @@
 #include <tbb/global_control.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -16,6 +15,7 @@
 #include "ensonify/filters/filter_registry.hpp"
 #include "ensonify/filters/learned_model.hpp"
 #include "ensonify/output/grey_file.hpp"
+#include "support/test_folders.hpp"
 
 /// Networks of tests/filters/learned/make_goldens.py.
 namespace ensonify {
@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
-fs::path goldens() { return fs::path(std::getenv("ENSONIFY_SOURCE_DIR")) / "tests/filters/learned"; }
+fs::path goldens() { return source_folder() / "tests/filters/learned"; }
 
 std::string bytes_of(const fs::path& path) {
   std::ifstream file(path, std::ios::binary);

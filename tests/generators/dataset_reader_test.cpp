@@ -122,12 +122,13 @@ TEST_P(DatasetReader, GivesWhatIsThere) {
 
 TEST_P(DatasetReader, RefusesABrokenManifest) {
   const std::string good = replaced(manifest, "FORMAT", GetParam());
-  for (const auto& [from, to, rule] : {std::tuple{R"("split": "train")", R"("split": "../train")", "no split '../train'"},
-                                       {R"("train": 3)", R"("train": 4)", "hold 3 frames, not 4"},
-                                       {R"("frames": 2)", R"("frames": -2)", "-2 is no whole number"},
-                                       {R"("frames": 2)", R"("frames": "two")", "broken manifest: \"two\" is no whole number"},
-                                       {R"("range_bins": 2)", R"("range_binz": 2)", "range_bins"},
-                                       {R"("layout": 3)", R"("layout": 3])", "broken manifest"}}) {
+  for (const auto& [from, to, rule] :
+       {std::tuple{R"("split": "train")", R"("split": "../train")", "no split '../train'"},
+        {R"("train": 3)", R"("train": 4)", "hold 3 frames, not 4"},
+        {R"("frames": 2)", R"("frames": -2)", "-2 is no whole number"},
+        {R"("frames": 2)", R"("frames": "two")", "broken manifest: \"two\" is no whole number"},
+        {R"("range_bins": 2)", R"("range_binz": 2)", "range_bins"},
+        {R"("layout": 3)", R"("layout": 3])", "broken manifest"}}) {
     write_file(folder_ / "dataset.json", replaced(good, from, to));
     EXPECT_THAT(refusal([&] { open_dataset(folder_); }), testing::AllOf(HasSubstr("dataset.json"), HasSubstr(rule)));
   }

@@ -38,8 +38,9 @@ std::vector<Vec3> box_points() {
     for (int j = 0; j <= 60; ++j) {
       const double a = i / 80.0;
       const double z = -2.2 + 0.9 * j / 60.0;
-      points.insert(points.end(),
-                    {{1.2, 2.3 + 0.6 * a, z}, {1.8, 2.3 + 0.6 * a, z}, {1.2 + 0.6 * a, 2.3, z}, {1.2 + 0.6 * a, 2.9, z}});
+      points.insert(
+          points.end(),
+          {{1.2, 2.3 + 0.6 * a, z}, {1.8, 2.3 + 0.6 * a, z}, {1.2 + 0.6 * a, 2.3, z}, {1.2 + 0.6 * a, 2.9, z}});
     }
   }
   return points;
@@ -70,8 +71,9 @@ TEST(GhostLabels, ABoxInTheTankHasGhostsAndNoneInOpenWater) {
   for (const bool of_glass : {true, false}) {
     const Scene tank = tank_with_box(true, of_glass);
     const RayScene rays(tank);
-    for (const Pose& pose : {pose_from_xyz_rpy({-1.5, 2.2, -1.7}, 0, 0.02, 0.35),
-                             pose_from_xyz_rpy({-2.0, 2.4, -1.75}, 0, 0, 0.3), pose_from_xyz_rpy({2.4, -1.0, -1.7}, 0, 0, 1.31)}) {
+    for (const Pose& pose :
+         {pose_from_xyz_rpy({-1.5, 2.2, -1.7}, 0, 0.02, 0.35), pose_from_xyz_rpy({-2.0, 2.4, -1.75}, 0, 0, 0.3),
+          pose_from_xyz_rpy({2.4, -1.0, -1.7}, 0, 0, 1.31)}) {
       const PingImages images = ping_in(tank, sonar, pose);
       std::vector<Ghost> ghosts;
       for (const Mirror& mirror : walls) {
@@ -81,8 +83,9 @@ TEST(GhostLabels, ABoxInTheTankHasGhostsAndNoneInOpenWater) {
         }
       }
       ASSERT_GT(ghosts.size(), 100u);
-      const auto found = std::count_if(ghosts.begin(), ghosts.end(),
-                                       [&](const Ghost& g) { return labelled_near(images.labels, g, multipath_label); });
+      const auto found = std::count_if(ghosts.begin(), ghosts.end(), [&](const Ghost& g) {
+        return labelled_near(images.labels, g, multipath_label);
+      });
       const double labelled = static_cast<double>(found) / static_cast<double>(ghosts.size());
       const auto all = std::count(images.labels.pixels().begin(), images.labels.pixels().end(), multipath_label);
       std::printf("%s walls: %.2f %% of %zu ghosts labelled; the label is on %.1f %% of the image\n",

@@ -1,12 +1,12 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "ensonify/generators/acceptance_bands.hpp"
 #include "ensonify/generators/against.hpp"
+#include "support/test_folders.hpp"
 
 namespace ensonify {
 namespace {
@@ -17,10 +17,7 @@ const RandomKey key = RandomKey::from_seed(11);
 
 /// Folder of the real pings (shared/real), empty where it is absent.
 fs::path real_pings() {
-  const char* shared = std::getenv("ENSONIFY_SHARED");
-  const fs::path root =
-      shared != nullptr ? fs::path(shared) : fs::path(std::getenv("ENSONIFY_SOURCE_DIR")) / "../shared";
-  const fs::path folder = root / "real/oculus_m1200d_2100khz";
+  const fs::path folder = shared_folder() / "real/oculus_m1200d_2100khz";
   return fs::is_regular_file(folder / "stats.json") ? folder : fs::path();
 }
 

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -8,13 +7,14 @@
 #include <sstream>
 
 #include "ensonify/generators/truth_channels.hpp"
+#include "support/test_folders.hpp"
 
 namespace ensonify {
 namespace {
 
 /// First cells of the table in docs/datasets.md that starts with | channel |.
 std::set<std::string> documented() {
-  std::ifstream file(std::filesystem::path(std::getenv("ENSONIFY_SOURCE_DIR")) / "docs/datasets.md");
+  std::ifstream file(source_folder() / "docs/datasets.md");
   std::set<std::string> names;
   bool inside = false;
   for (std::string line; std::getline(file, line);) {

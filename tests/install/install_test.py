@@ -18,7 +18,7 @@ arguments = None
 
 
 def run(*command, **options):
-    environment = {k: v for k, v in os.environ.items() if k not in ("ENSONIFY_DATA", "ENSONIFY_SOURCE_DIR")}
+    environment = {k: v for k, v in os.environ.items() if k != "ENSONIFY_DATA"}
     done = subprocess.run([str(c) for c in command], env=environment, capture_output=True, text=True, **options)
     if done.returncode != 0:
         raise AssertionError(f"{' '.join(map(str, command))} gave {done.returncode}\n{done.stdout}\n{done.stderr}")

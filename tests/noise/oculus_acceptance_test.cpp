@@ -4,12 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <map>
 
 #include "ensonify/generators/form_images.hpp"
 #include "ensonify/generators/speckle_figures.hpp"
+#include "support/test_folders.hpp"
 
 namespace ensonify {
 namespace {
@@ -33,8 +33,7 @@ double share(const SonarImage& image, int low, int high) {
 
 /// Figures by name, a value a seed.
 std::map<std::string, std::vector<double>> figures_of_all_seeds() {
-  const char* source = std::getenv("ENSONIFY_SOURCE_DIR");
-  const Scene scene = load_scene((std::filesystem::path(source) / "docs/validation/rough_tank.yaml").string());
+  const Scene scene = load_scene((source_folder() / "docs/validation/rough_tank.yaml").string());
   const RayScene rays(scene);
   const SonarModel sonar = load_sonar("oculus_m1200d_hf_256");
   const Receiver receiver(sonar);

@@ -3,12 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cstdlib>
-
 #include "ensonify/core/error.hpp"
 #include "ensonify/core/pose.hpp"
 #include "ensonify/scenes/mesh_measure.hpp"
 #include "mesh_files.hpp"
+#include "support/test_folders.hpp"
 
 namespace ensonify {
 namespace {
@@ -268,10 +267,7 @@ struct RealMesh {
 };
 
 TEST(MeshImport, ReadsRealRobots) {
-  const char* shared = std::getenv("ENSONIFY_SHARED");
-  const char* source = std::getenv("ENSONIFY_SOURCE_DIR");
-  const fs::path folder =
-      (shared != nullptr ? fs::path(shared) : fs::path(source != nullptr ? source : ".") / ".." / "shared") / "meshes";
+  const fs::path folder = shared_folder() / "meshes";
   if (!fs::is_directory(folder)) GTEST_SKIP() << folder << " is absent; set ENSONIFY_SHARED";
   // The glider went through MeshLab, which marks every file Y_UP; its wings span x, its hull lies along y and its tail
   // fin stands along z, 3.1 m long as drawn.

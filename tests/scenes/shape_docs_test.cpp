@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -9,12 +8,13 @@
 #include "ensonify/scenes/mesh_measure.hpp"
 #include "ensonify/scenes/scene.hpp"
 #include "ensonify/scenes/scene_shapes.hpp"
+#include "support/test_folders.hpp"
 
 /// docs/shapes holds one scene a shape, which loads and shows it.
 namespace ensonify {
 namespace {
 
-std::filesystem::path docs() { return std::filesystem::path(std::getenv("ENSONIFY_SOURCE_DIR")) / "docs"; }
+std::filesystem::path docs() { return source_folder() / "docs"; }
 
 std::string content(const std::filesystem::path& path) {
   std::ifstream file(path);

@@ -2,7 +2,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -12,6 +11,7 @@
 #include "ensonify/scenes/water.hpp"
 #include "ensonify/sensor_models/beam_table.hpp"
 #include "ensonify/sensor_models/sonar_model.hpp"
+#include "support/test_folders.hpp"
 
 namespace ensonify {
 namespace {
@@ -83,10 +83,7 @@ TEST(BeamTable, UniformSineIsTheOculusLaw) {
 
 // The header of a raw ping holds the bearings as 256 little-endian int16 in 0.01 deg, from byte 122 on.
 TEST(BeamTable, RealOculusHeader) {
-  const char* shared = std::getenv("ENSONIFY_SHARED");
-  const fs::path root =
-      shared != nullptr ? fs::path(shared) : fs::path(std::getenv("ENSONIFY_SOURCE_DIR")) / "../shared";
-  const fs::path file = root / "real/oculus_m1200d_2100khz/one_ping_8bit.raw";
+  const fs::path file = shared_folder() / "real/oculus_m1200d_2100khz/one_ping_8bit.raw";
   if (!fs::is_regular_file(file)) GTEST_SKIP() << "no " << file << "; set ENSONIFY_SHARED";
   std::ifstream in(file, std::ios::binary);
   const std::string bytes{std::istreambuf_iterator<char>(in), {}};

@@ -21,12 +21,15 @@ constexpr std::array columns{Column{"psnr_db", &FilterScores::psnr_db},
                              Column{"ssim", &FilterScores::ssim},
                              Column{"edge_preservation", &FilterScores::edge_preservation},
                              Column{"looks", &FilterScores::looks},
+                             Column{"gated_psnr_db", &FilterScores::gated_psnr_db},
                              Column{"masked_psnr_db", &FilterScores::masked_psnr_db},
                              Column{"masked_ssim", &FilterScores::masked_ssim},
                              Column{"precision", &FilterScores::precision},
                              Column{"recall", &FilterScores::recall},
                              Column{"iou", &FilterScores::iou},
-                             Column{"f1", &FilterScores::f1}};
+                             Column{"f1", &FilterScores::f1},
+                             Column{"kept", &FilterScores::kept},
+                             Column{"ghosts_removed", &FilterScores::ghosts_removed}};
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
 json value_of(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
@@ -76,11 +79,12 @@ Plot precision_over_recall(const FilterReport& report) {
 }  // namespace
 
 std::string scores_csv(const FilterReport& report) {
-  std::string text = "filter,preset,scene,frames,threshold";
+  std::string text = "filter,preset,scene,frames,threshold,threshold_keeping";
   for (const Column& c : columns) text += fmt::format(",{0},{0}_low,{0}_high", c.name);
   text += "\n";
   for (const FilterScores& row : report.rows) {
-    text += fmt::format("{},{},{},{},{}", row.filter, row.preset, row.scene, row.psnr_db.frames, row.t);
+    text += fmt::format("{},{},{},{},{},{}", row.filter, row.preset, row.scene, row.psnr_db.frames, row.t.best,
+                        row.t.keeping);
     for (const Column& c : columns) {
       const Estimate& e = row.*c.estimate;
       text += fmt::format(",{},{},{}", number(e.value), number(e.low), number(e.high));
@@ -106,7 +110,11 @@ std::string scores_json(const FilterReport& report) {
             {"confidence", 0.95},
             {"rows", json::array()}};
   for (const FilterScores& row : report.rows) {
-    json entry{{"filter", row.filter}, {"preset", row.preset}, {"scene", row.scene}, {"threshold", row.t}};
+    json entry{{"filter", row.filter},
+               {"preset", row.preset},
+               {"scene", row.scene},
+               {"threshold", row.t.best},
+               {"threshold_keeping", row.t.keeping}};
     for (const Column& c : columns) {
       const Estimate& e = row.*c.estimate;
       entry[c.name] = {
@@ -132,15 +140,16 @@ PlotSheet scores_plots(const FilterReport& report) {
 }
 
 std::string scores_table(const FilterReport& report) {
-  std::string text =
-      fmt::format("{:<14} {:<7} {:>8} {:>7} {:>7} {:>8} {:>4} {:>7} {:>7} {:>7} {:>11} {:>8}\n", "filter", "preset",
-                  "PSNR dB", "SSIM", "edges", "looks", "t", "prec", "recall", "IoU", "masked PSNR", "ms");
+  std::string text = fmt::format("{:<14} {:<9} {:>8} {:>6} {:>6} {:>4} {:>6} {:>6} {:>6} {:>8} {:>8} {:>7} {:>8}\n",
+                                 "filter", "preset", "PSNR dB", "SSIM", "edges", "t", "prec", "recall", "IoU",
+                                 "gated dB", "raw dB", "ghosts", "ms");
   for (const FilterScores& row : report.rows) {
     if (row.scene != "all") continue;
-    text += fmt::format("{:<14} {:<7} {:8.2f} {:7.3f} {:7.3f} {:8.1f} {:4} {:7.3f} {:7.3f} {:7.3f} {:11.2f} {:8.2f}\n",
-                        row.filter, row.preset, row.psnr_db.value, row.ssim.value, row.edge_preservation.value,
-                        row.looks.value, row.t, row.precision.value, row.recall.value, row.iou.value,
-                        row.masked_psnr_db.value, row.time_ms);
+    text +=
+        fmt::format("{:<14} {:<9} {:8.2f} {:6.3f} {:6.3f} {:4} {:6.3f} {:6.3f} {:6.3f} {:8.2f} {:8.2f} {:>7} {:8.2f}\n",
+                    row.filter, row.preset, row.psnr_db.value, row.ssim.value, row.edge_preservation.value, row.t.best,
+                    row.precision.value, row.recall.value, row.iou.value, row.gated_psnr_db.value,
+                    row.masked_psnr_db.value, number(std::round(1000 * row.ghosts_removed.value) / 1000), row.time_ms);
   }
   return text;
 }

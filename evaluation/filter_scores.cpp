@@ -1,6 +1,7 @@
 #include "ensonify/evaluation/filter_scores.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <set>
 
 #include "ensonify/evaluation/image_scores.hpp"
@@ -33,18 +34,34 @@ Estimate pooled(const std::vector<const FrameScores*>& frames, double (MaskCount
   return bootstrap_estimate(static_cast<int>(frames.size()), RandomKey::from_seed(0).child("pooled mask"), statistic);
 }
 
+Estimate pooled_share(const std::vector<const FrameScores*>& frames, double FrameScores::*part,
+                      double FrameScores::*whole) {
+  const auto statistic = [&](std::span<const int> weights) {
+    double parts = 0, wholes = 0;
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      parts += weights[i] * frames[i]->*part;
+      wholes += weights[i] * frames[i]->*whole;
+    }
+    return wholes > 0 ? parts / wholes : std::numeric_limits<double>::quiet_NaN();
+  };
+  return bootstrap_estimate(static_cast<int>(frames.size()), RandomKey::from_seed(0).child("pooled share"), statistic);
+}
+
 FilterScores pool(const std::vector<const FrameScores*>& frames) {
   FilterScores scores;
   scores.psnr_db = mean_of(frames, &FrameScores::psnr_db);
   scores.ssim = mean_of(frames, &FrameScores::ssim);
   scores.edge_preservation = mean_of(frames, &FrameScores::edge_preservation);
   scores.looks = mean_of(frames, &FrameScores::looks);
+  scores.gated_psnr_db = mean_of(frames, &FrameScores::gated_psnr_db);
   scores.masked_psnr_db = mean_of(frames, &FrameScores::masked_psnr_db);
   scores.masked_ssim = mean_of(frames, &FrameScores::masked_ssim);
   scores.precision = pooled(frames, &MaskCounts::precision);
   scores.recall = pooled(frames, &MaskCounts::recall);
   scores.iou = pooled(frames, &MaskCounts::iou);
   scores.f1 = pooled(frames, &MaskCounts::f1);
+  scores.kept = pooled_share(frames, &FrameScores::kept, &FrameScores::echoes);
+  scores.ghosts_removed = pooled_share(frames, &FrameScores::ghosts_removed, &FrameScores::ghosts);
   std::vector<double> times;
   for (const FrameScores* frame : frames) {
     scores.levels += frame->levels;
@@ -57,26 +74,35 @@ FilterScores pool(const std::vector<const FrameScores*>& frames) {
 
 }  // namespace
 
-FrameScores score_frame(const Image2<float>& filtered, const Image2<float>& raw, const Image2<float>& clean,
-                        const Image2<std::uint8_t>& mask, int t) {
+FrameScores score_frame(const Image2<float>& filtered, const FrameTruth& truth, MaskThresholds t) {
+  const auto& [raw, clean, mask, labels] = truth;
   const Image2<float> image = held(filtered);
-  Image2<float> masked(raw.rows(), raw.columns());
+  Image2<float> masked(raw.rows(), raw.columns()), gated(raw.rows(), raw.columns());
   for (std::size_t i = 0; i < raw.size(); ++i) {
-    if (image.pixels()[i] >= static_cast<float>(t)) masked.pixels()[i] = raw.pixels()[i];
+    if (image.pixels()[i] < static_cast<float>(t.best)) continue;
+    masked.pixels()[i] = raw.pixels()[i];
+    gated.pixels()[i] = image.pixels()[i];
   }
   FrameScores scores;
   scores.psnr_db = psnr_db(image, clean);
   scores.ssim = ssim(image, clean);
   scores.edge_preservation = edge_preservation(image, clean);
   scores.looks = equivalent_looks(image, clean);
+  scores.gated_psnr_db = psnr_db(gated, clean);
   scores.masked_psnr_db = psnr_db(masked, clean);
   scores.masked_ssim = ssim(masked, clean);
   scores.levels = count_levels(image, mask);
-  scores.mask = scores.levels.at(t);
+  scores.mask = scores.levels.at(t.best);
+  const MaskCounts kept = scores.levels.at(t.keeping);
+  scores.kept = static_cast<double>(kept.true_positive);
+  scores.echoes = static_cast<double>(kept.true_positive + kept.false_negative);
+  const GhostEnergy ghosts = ghost_energy(image, raw, labels);
+  scores.ghosts_removed = ghosts.removed(t.keeping);
+  scores.ghosts = ghosts.all();
   return scores;
 }
 
-std::vector<FilterScores> pool_scores(const std::string& filter, const std::string& preset, int t,
+std::vector<FilterScores> pool_scores(const std::string& filter, const std::string& preset, MaskThresholds t,
                                       const std::vector<FrameScores>& frames) {
   std::set<std::string> scenes;
   for (const FrameScores& frame : frames) scenes.insert(frame.scene);

@@ -16,7 +16,7 @@ struct JudgedFrame {
   std::string scene;
   GreyImage raw;
   Image2<float> clean;
-  Image2<std::uint8_t> mask;
+  Image2<std::uint8_t> mask, labels;
 };
 
 /// Frames of one split, some or all.

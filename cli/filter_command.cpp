@@ -21,7 +21,9 @@
 #include "ensonify/filters/filter_chain.hpp"
 #include "ensonify/filters/filter_registry.hpp"
 #include "ensonify/output/atomic_file.hpp"
+#include "ensonify/output/fan_view.hpp"
 #include "ensonify/output/grey_file.hpp"
+#include "ensonify/sensor_models/sonar_model.hpp"
 
 namespace ensonify::cli {
 namespace {
@@ -32,6 +34,8 @@ struct Arguments {
   std::string method, input, output;
   std::vector<std::string> settings;
   std::string preset, format;
+  std::string fan;  // sonar of the fan images, empty: images are polar
+  double range_max_m = 0;
   int jobs = 0;
   bool list = false, markdown = false;
   std::string progress = "auto";
@@ -91,11 +95,37 @@ FilterChain chosen_chain(const Arguments& a) {
   return chain;
 }
 
-void filter_file(const FilterChain& chain, const fs::path& input, const fs::path& output) {
+/// What is done with an image: the chain, on range bins and beams, whatever the image shows.
+struct Work {
+  FilterChain chain;
+  std::optional<SonarGeometry> fan;
+
+  GreyImage of(const GreyImage& raw) const {
+    if (!fan) return apply(chain, raw);
+    const GreyImage filtered = apply(chain, {polar_view(raw.grey, *fan), raw.depth});
+    const bool mask = role_of(chain.steps.back().method) == FilterRole::detects;
+    return {fan_view(filtered.grey, *fan, raw.grey.rows(), mask ? Resampling::nearest : Resampling::bilinear),
+            raw.depth};
+  }
+};
+
+Work chosen_work(const Arguments& a) {
+  Work work{chosen_chain(a), {}};
+  if (a.fan.empty()) {
+    if (a.range_max_m > 0) throw ConfigError("--range-max goes with --fan, whose scale it is");
+    return work;
+  }
+  RangeWindow window;
+  if (a.range_max_m > 0) window.range_max_m = a.range_max_m;
+  work.fan = load_sonar(a.fan, window).geometry;
+  return work;
+}
+
+void filter_file(const Work& work, const fs::path& input, const fs::path& output) {
   const GreyImage raw = read_grey(input);
   GreyImage filtered;
   try {
-    filtered = apply(chain, raw);
+    filtered = work.of(raw);
   } catch (const DataError& e) {
     throw DataError(fmt::format("{}: {}", input.string(), e.what()));
   }
@@ -104,7 +134,7 @@ void filter_file(const FilterChain& chain, const fs::path& input, const fs::path
 }
 
 /// Files that went wrong do not keep the others from being filtered.
-void filter_folder(const FilterChain& chain, const Arguments& a) {
+void filter_folder(const Work& work, const Arguments& a) {
   std::vector<fs::path> inputs;
   for (const auto& entry : fs::directory_iterator(a.input)) {
     if (is_grey_file(entry.path()) && entry.path().filename().string()[0] != '.') inputs.push_back(entry.path());
@@ -127,7 +157,7 @@ void filter_folder(const FilterChain& chain, const Arguments& a) {
     fs::path output = folder / inputs[i].filename();
     if (!a.format.empty()) output.replace_extension(a.format);
     try {
-      filter_file(chain, inputs[i], output);
+      filter_file(work, inputs[i], output);
     } catch (const Error& e) {
       faults[i] = e.what();
     }
@@ -149,15 +179,15 @@ void run(const Arguments& a) {
   }
   std::optional<tbb::global_control> jobs;
   if (a.jobs > 0) jobs.emplace(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(a.jobs));
-  const FilterChain chain = chosen_chain(a);
+  const Work work = chosen_work(a);
   if (!fs::exists(a.input)) throw DataError(fmt::format("{}: there is no such file or folder", a.input));
-  if (fs::is_directory(a.input)) return filter_folder(chain, a);
+  if (fs::is_directory(a.input)) return filter_folder(work, a);
   if (!a.format.empty()) throw ConfigError("--format goes with a folder; a file's format is its extension");
   const fs::path output =
       fs::is_directory(a.output) ? fs::path(a.output) / fs::path(a.input).filename() : fs::path(a.output);
   if (!is_grey_file(output))
     throw ConfigError(fmt::format("{}: an image must end in .png, .exr or .npy", output.string()));
-  write_unbroken(output.parent_path(), [&] { filter_file(chain, a.input, output); });
+  write_unbroken(output.parent_path(), [&] { filter_file(work, a.input, output); });
 }
 
 }  // namespace
@@ -170,6 +200,12 @@ void add_filter(CLI::App& app) {
   command->add_option("OUTPUT", a->output, "Image or folder; .npy and .exr hold levels of 0..255 unrounded");
   command->add_option("--set", a->settings, "Parameter of the method, key=value; repeat")->allow_extra_args(false);
   command->add_option("--preset", a->preset, "Parameters chosen for the method: paper, tuned, or a YAML file");
+  command->add_option(
+      "--fan", a->fan,
+      "Sonar YAML or bundled name: images are fans, forward up, the sonar at the middle of the lower edge; "
+      "filtered as range bins and beams, and drawn again");
+  command->add_option("--range-max", a->range_max_m, "With --fan: metres from the lower to the upper edge of the fan")
+      ->check(above_zero());
   command->add_option("--format", a->format, "Of a folder's outputs: png, npy or exr (default: as the input)")
       ->check(CLI::IsMember({"png", "npy", "exr"}));
   command->add_flag("--list", a->list,

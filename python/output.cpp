@@ -96,6 +96,10 @@ py::array fan_of(const py::object& image, const SonarModel& sonar, int height) {
   return moved_to_array(fan_view(pixels, sonar.geometry, height));
 }
 
+py::array polar_of(const py::object& fan, const SonarModel& sonar) {
+  return moved_to_array(polar_view(image_from(require_array<float>(fan, "fan", 2)), sonar.geometry));
+}
+
 }  // namespace
 
 void bind_output(py::module_& m) {
@@ -171,6 +175,9 @@ void bind_output(py::module_& m) {
         "uint8 or uint16 [height, width], or uint8 [height, width, 3]; whole or not at all.");
   m.def("fan_view", &fan_of, py::arg("image"), py::arg("sonar"), py::arg("height") = 720,
         "uint8 [height, width]: the image as an operator sees it, forward up. `image`: uint8 [bins, beams].");
+  m.def("polar_view", &polar_of, py::arg("fan"), py::arg("sonar"),
+        "float32 [bins, beams] of such a view (float32 [height, width], the sonar at the middle of its lower edge, range_max "
+        "at its upper one). Raises DataError where its width does not go with its height and the sonar's fan.");
 }
 
 }  // namespace ensonify::python

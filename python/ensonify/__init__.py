@@ -18,8 +18,8 @@ import typing as _typing
 from . import _ensonify
 from ._ensonify import (
     ClosedLoop, ConfigError, DataError, Dataset, DiskError, Filter, Frame, Grid, Look, Map, Mapper, Noise, Ping,
-    Recipe, Run, Scene, Simulator, Sonar, __version__, draw_scene, fan_view, filter_names, noise_names, pose,
-    recipe_names, roll_pitch_yaw_deg, save_png, scene_names, score_image, score_map, score_mask, set_threads,
+    Recipe, Run, Scene, Simulator, Sonar, __version__, draw_scene, fan_view, filter_names, noise_names, polar_view,
+    pose, recipe_names, roll_pitch_yaw_deg, save_png, scene_names, score_image, score_map, score_mask, set_threads,
     sonar_names, voxelize)
 
 if _typing.TYPE_CHECKING:
@@ -28,8 +28,8 @@ if _typing.TYPE_CHECKING:
 __all__ = [
     "ClosedLoop", "ConfigError", "DataError", "Dataset", "DiskError", "Filter", "Frame", "Grid", "Look", "Map",
     "Mapper", "Noise", "Ping", "Recipe", "Run", "Scene", "Simulator", "Sonar", "__version__", "config", "data",
-    "draw_scene", "fan_view", "filter_names", "gym", "make_frame", "noise_names", "open_dataset", "pose", "recipe_names",
-    "roll_pitch_yaw_deg", "save_png", "scene_names", "score_image", "score_map", "score_mask", "set_threads",
+    "draw_scene", "fan_view", "filter_names", "gym", "make_frame", "noise_names", "open_dataset", "polar_view", "pose",
+    "recipe_names", "roll_pitch_yaw_deg", "save_png", "scene_names", "score_image", "score_map", "score_mask", "set_threads",
     "sonar_names", "voxelize"]
 
 for _thing in vars(_ensonify).copy().values():

@@ -10,7 +10,7 @@ import unittest
 import numpy
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from support import RECIPE, ProgramTest, files, leftovers, main, read_grey, write_grey
+from support import RECIPE, SCENE, SONAR, ProgramTest, files, leftovers, main, read_grey, write_grey
 
 try:
     from skimage.metrics import structural_similarity
@@ -72,6 +72,24 @@ class Images(ProgramTest):
         self.succeed("filter", "median", "in.npy", "median.npy", "--set", "window=3")
         self.succeed("filter", "unsharp", "median.npy", "steps.npy", "--set", "amount=0.5")
         self.assertTrue((self.load("chain.npy") == self.load("steps.npy")).all())
+
+    def test_fans_are_filtered_as_bins_and_beams(self):
+        self.write("small_sonar.yaml", SONAR)
+        self.write("block.yaml", SCENE)
+        self.succeed("ping", "block.yaml", "--sonar", "small_sonar.yaml", "--pose", "0 0 0 0 0 0", "--out", "ping")
+        self.succeed("filter", "median", "ping/fan.png", "fan.npy", "--fan", "small_sonar.yaml")
+        self.succeed("filter", "median", "ping/raw.png", "polar.npy")
+        polar, fan = self.load("polar.npy"), self.load("fan.npy")
+        self.assertEqual(fan.shape, read_grey(self.folder / "ping/fan.png").shape)
+        bin_, _ = numpy.unravel_index(polar.argmax(), polar.shape)
+        v, u = numpy.unravel_index(fan.argmax(), fan.shape)
+        height, width = fan.shape
+        reach_px = numpy.hypot(height - v - 0.5, width / 2 - u - 0.5)
+        self.assertAlmostEqual(reach_px / height * polar.shape[0], bin_, delta=0.05 * polar.shape[0])
+        self.succeed("filter", "cfar", "ping/fan.png", "mask.png", "--fan", "small_sonar.yaml")
+        self.assertLessEqual(set(numpy.unique(read_grey(self.folder / "mask.png"))), {0, 255})
+        self.refuse(1, ["pixels high", "raw.png"], "filter", "median", "ping/raw.png", "o.png", "--fan", "small_sonar.yaml")
+        self.refuse(2, ["--range-max goes with --fan"], "filter", "median", "ping/raw.png", "o.png", "--range-max", "3")
 
     def test_presets(self):
         self.save("in.npy", speckled())

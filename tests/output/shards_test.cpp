@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <filesystem>
 #include <stdexcept>
 
@@ -199,6 +201,29 @@ TEST(FanView, BrightCellLandsWhereItBelongs) {
     EXPECT_NEAR(u / sum, fan.columns() / 2.0 - r * std::sin(theta) * pixels_per_m, 1.0) << bin << " " << beam;
     EXPECT_NEAR(v / sum, height - r * std::cos(theta) * pixels_per_m, 1.0) << bin << " " << beam;
   }
+}
+
+/// A smooth image survives both ways where neighbouring pixels of the fan lie within the fan.
+TEST(FanView, BackToPolarIsTheImageItWasDrawnFrom) {
+  SonarGeometry g;
+  g.range_min_m = 1.0;
+  g.range_max_m = 9.0;
+  g.range_bins = 160;
+  for (int b = 0; b < 121; ++b) g.beam_azimuth_rad.push_back(radians(60.0 - b));
+  Image2<float> image(160, 121);
+  for (int k = 0; k < 160; ++k) {
+    for (int b = 0; b < 121; ++b) image(k, b) = static_cast<float>(120.0 + 80.0 * std::sin(0.05 * k) * std::cos(0.04 * b));
+  }
+  const Image2<float> back = polar_view(fan_view(image, g, 720, Resampling::bilinear), g);
+  ASSERT_EQ(back.rows(), 160);
+  ASSERT_EQ(back.columns(), 121);
+  for (int k = 2; k < 158; ++k) {
+    for (int b = 2; b < 119; ++b) EXPECT_NEAR(back(k, b), image(k, b), 0.5F) << k << " " << b;
+  }
+  for (float& level : image.pixels()) level = level > 120.0F ? 255.0F : 0.0F;
+  const Image2<float> mask = fan_view(image, g, 720, Resampling::nearest);
+  EXPECT_TRUE(std::ranges::all_of(mask.pixels(), [](float level) { return level == 0.0F || level == 255.0F; }));
+  EXPECT_THROW(polar_view(Image2<float>(720, 1000), g), DataError);
 }
 
 TEST(FanView, BlackOutsideOfTheFan) {

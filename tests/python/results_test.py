@@ -126,7 +126,11 @@ class Pictures(ModuleTest):
     def test_a_fan_is_the_programs(self):
         self.succeed("ping", "block.yaml", "--sonar", "small_sonar.yaml", "--range-max", 8, "--range-bins", 128, "--pose", "-4 -4 -2 0 10 45", "--out", "ping")
         ping = self.simulator().ping(POSE)
-        self.assertSameBits(ensonify.fan_view(ping.raw, ping.sonar), read_grey(self.folder / "ping/fan.png"))
+        fan = ensonify.fan_view(ping.raw, ping.sonar)
+        self.assertSameBits(fan, read_grey(self.folder / "ping/fan.png"))
+        polar = ensonify.polar_view(fan.astype(numpy.float32), ping.sonar)
+        self.assertEqual(polar.shape, ping.raw.shape)
+        self.assertGreater(numpy.corrcoef(polar.ravel(), ping.raw.ravel())[0, 1], 0.7)  # the fan's pixels average
 
     def test_a_scene_as_a_mesh_file(self):
         self.scene().save(self.folder / "scene.obj")

@@ -43,7 +43,7 @@ ModelCard read_card(const fs::path& onnx) {
     const std::vector<double> range = file.numbers("input_range", 2, {-1e6, 1e6});
     card.input_range = {range[0], range[1]};
     card.threshold = file.number("threshold", {0, 1});
-    for (const char* for_people : {"ngf", "parameters", "sha256", "license", "metrics", "training"})
+    for (const char* for_people : {"heads", "ngf", "parameters", "sha256", "license", "metrics", "training"})
       file.has(for_people);
     file.finish();
     return card;

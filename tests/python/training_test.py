@@ -102,7 +102,7 @@ class TrainingTest(unittest.TestCase):
         self.assertEqual([row["step"] for row in rows], ["20", "40", "60"])
         self.assertLess(float(rows[-1]["loss"]), 0.7 * float(rows[0]["loss"]))
         card = json.loads((self.folder / "model/model.json").read_text())
-        self.assertEqual(set(card), {"schema", "network", "ngf", "parameters", "sha256", "input_range", "threshold", "license",
+        self.assertEqual(set(card), {"schema", "network", "heads", "ngf", "parameters", "sha256", "input_range", "threshold", "license",
                                      "metrics", "training"})
         self.assertEqual((card["network"], card["ngf"], card["input_range"]), ("unet", 2, [0, 1]))
         self.assertGreater(card["metrics"]["iou"], LEAST_IOU)
@@ -159,7 +159,14 @@ class TrainingTest(unittest.TestCase):
         self.assertEqual((card["training"]["pairs"], card["training"]["steps"]), (12, 6))
         self.succeed("small.yaml", "--out", "of_recipe", "--steps", "2", "--from", "of_set/checkpoint.pt", *tiny)
         self.assertIn("recipe small", json.loads((self.folder / "of_recipe/model.json").read_text())["training"]["data"])
-        self.refuse(2, ["ngf 1", "ngf 2"], "set", "--out", "x", "--from", "of_set/checkpoint.pt", "--ngf", "2")
+        self.succeed("set", "--out", "of_clean", "--steps", "2", "--clean", *tiny)
+        card = json.loads((self.folder / "of_clean/model.json").read_text())
+        self.assertEqual(card["heads"], ["echo", "clean"])
+        self.assertGreater(card["metrics"]["clean_psnr_db"], 0)
+        self.assertIn("clean_psnr_db", self.rows("of_clean")[0])
+        self.refuse(2, ["clean=True", "clean=False"], "set", "--out", "x", "--from", "of_clean/checkpoint.pt", *tiny)
+        self.refuse(2, ["--clean goes with --model unet"], "set", "--out", "x", "--clean", "--model", "pix2pix")
+        self.refuse(2, ["ngf=1", "ngf=2"], "set", "--out", "x", "--from", "of_set/checkpoint.pt", "--ngf", "2")
 
     def test_the_program_runs_an_untrained_network(self):
         """Its biases are all alike, which OpenCV could not read."""
@@ -185,6 +192,7 @@ class TrainingTest(unittest.TestCase):
         (self.folder / "empty").mkdir()
         self.refuse(1, ["empty/raw"], "empty", "--out", "x")
         self.refuse(2, ["nowhere", "quick"], "nowhere", "--out", "x")
+        self.refuse(2, ["pairs", "no clean images"], "pairs", "--clean", "--out", "x")
         self.refuse(2, ["--val 'most'"], "pairs", "--val", "most", "--out", "x")
         self.refuse(2, ["whole number from 1"], "pairs", "--ngf", "0", "--out", "x")
         self.refuse(1, ["absent.pt"], "pairs", "--from", "absent.pt", "--out", "x", "--val", "0.5")

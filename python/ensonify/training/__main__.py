@@ -22,7 +22,7 @@ def main() -> int:
     except ensonify.ConfigError as fault:
         print(f"error: {fault}", file=sys.stderr)
         return 2
-    except (ensonify.Error, ensonify.DataError, OSError) as fault:
+    except (ensonify.DataError, OSError) as fault:
         print(f"error: {fault}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:

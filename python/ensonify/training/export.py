@@ -16,7 +16,7 @@ OPSET = 11
 
 
 def onnx_bytes(network: UNet, kind: NetworkKind) -> bytes:
-    """Input `image` float32 [1, 1, bins, beams] on the input range, output `probability` of the same shape."""
+    """Input `image` float32 [1, 1, bins, beams] on the input range, output `heads` [1, 1 or 2, bins, beams], 0..1."""
     used = folded(network, kind)
     _tell_apart(list(used.parameters()))
     example = torch.zeros(1, 1, 2**kind.depth, 2**kind.depth)
@@ -25,7 +25,7 @@ def onnx_bytes(network: UNet, kind: NetworkKind) -> bytes:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
         torch.onnx.export(used, example, file, opset_version=OPSET, input_names=["image"],
-                          output_names=["probability"], dynamic_axes={"image": sides, "probability": sides})
+                          output_names=["heads"], dynamic_axes={"image": sides, "heads": sides})
     return file.getvalue()
 
 
@@ -47,6 +47,7 @@ def write_model(folder: pathlib.Path, network: UNet, kind: NetworkKind, *, thres
     card = {
         "schema": 1,
         "network": kind.name,
+        "heads": ["echo", "clean"] if kind.clean else ["echo"],
         "ngf": kind.ngf,
         "parameters": sum(p.numel() for p in folded(network, kind).parameters()),
         "sha256": hashlib.sha256(model).hexdigest(),

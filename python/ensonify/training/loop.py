@@ -11,7 +11,7 @@ import torch
 
 from ensonify import ConfigError, __version__, recipe_names
 
-from .batches import Batch, batches
+from .batches import batches
 from .curves import Row, write_curves
 from .export import write_model
 from .files import load_checkpoint, save_checkpoint
@@ -26,14 +26,16 @@ def open_source(options: argparse.Namespace) -> Source:
     """Which of the three kinds the words name. Raises ConfigError, DataError."""
     folder = pathlib.Path(options.data)
     if (folder / "dataset.json").is_file():
-        return dataset_source(folder, options.val or "val", options.val_frames, options.pairs)
+        return dataset_source(folder, options.val or "val", options.val_frames, options.pairs, options.clean)
     if folder.is_dir():
+        if options.clean:
+            raise ConfigError(f"{folder}: pairs hold no clean images; --clean goes with a dataset of ensonify or a recipe")
         return folder_source(folder, options.val or "0.2", options.val_frames, options.pairs)
     if folder.suffix not in (".yaml", ".yml") and options.data not in recipe_names():
         raise ConfigError(f"{options.data}: neither a folder nor a recipe; bundled recipes: {', '.join(recipe_names())}")
     if options.pairs or options.epochs or options.val:
         raise ConfigError("--pairs, --epochs and --val go with a folder: a recipe's frames have no end, and it says what val is")
-    return recipe_source(options.data, options.seed, options.val_frames)
+    return recipe_source(options.data, options.seed, options.val_frames, options.clean)
 
 
 def steps_of(options: argparse.Namespace, source: Source) -> int:
@@ -73,7 +75,7 @@ def train(options: argparse.Namespace) -> Scores:
     torch.set_num_threads(options.threads or torch.get_num_threads())
     torch.backends.cudnn.deterministic = True
     device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
-    kind = NetworkKind(options.model, options.ngf)
+    kind = NetworkKind(options.model, options.ngf, options.clean)
     file = options.out / "checkpoint.pt"
     if file.exists() and not options.resume:
         raise ConfigError(f"{file}: a training is already there; --resume goes on with it, another --out begins one")
@@ -99,7 +101,7 @@ def train(options: argparse.Namespace) -> Scores:
     for step in range(first, steps):
         batch = next(made)
         torch.manual_seed(options.seed * 1_000_003 + step)  # of dropout
-        losses = trainer.step(Batch(batch.image.to(device), batch.mask.to(device)), lr_share(step, steps))
+        losses = trainer.step(batch.to(device), lr_share(step, steps))
         total += losses["loss"]
         since += 1
         line.show(step + 1, "  ".join(f"{name} {value:.4f}" for name, value in losses.items()))
@@ -107,8 +109,10 @@ def train(options: argparse.Namespace) -> Scores:
             continue
         scores = validate(trainer.network, kind, source.val, device)
         rows.append({"step": step + 1, "loss": total / since, "iou": scores.iou, "f1": scores.f1,
-                     "precision": scores.precision, "recall": scores.recall, "threshold": scores.threshold})
-        line.show(step + 1, f"loss {total / since:.4f}  val IoU {scores.iou:.4f}  F1 {scores.f1:.4f}", lasting=True)
+                     "precision": scores.precision, "recall": scores.recall, "threshold": scores.threshold,
+                     **({"clean_psnr_db": scores.clean_psnr_db} if kind.clean else {})})
+        line.show(step + 1, f"loss {total / since:.4f}  val IoU {scores.iou:.4f}  F1 {scores.f1:.4f}"
+                  + (f"  clean {scores.clean_psnr_db:.2f} dB" if kind.clean else ""), lasting=True)
         total, since = 0.0, 0
         if not best or scores.iou > best["iou"]:
             weights = {name: tensor.cpu().clone() for name, tensor in trainer.network.state_dict().items()}
@@ -123,10 +127,9 @@ def train(options: argparse.Namespace) -> Scores:
 def start_from(file: pathlib.Path, kind: NetworkKind, trainer: Trainer) -> None:
     """Fine-tuning: the best weights of another training of the same network."""
     state = load_checkpoint(file)
-    theirs = (state["options"]["model"], state["options"]["ngf"])
-    if theirs != (kind.name, kind.ngf):
-        raise ConfigError(f"{file}: is a {theirs[0]} of ngf {theirs[1]}, not a {kind.name} of ngf {kind.ngf}; "
-                          "give the same --model and --ngf")
+    theirs = NetworkKind(state["options"]["model"], state["options"]["ngf"], state["options"]["clean"])
+    if theirs != kind:
+        raise ConfigError(f"{file}: is {theirs}, not {kind}; give the same --model, --ngf and --clean")
     trainer.network.load_state_dict(state["best"]["network"])
 
 
@@ -134,7 +137,7 @@ def write_best(options: argparse.Namespace, kind: NetworkKind, best: typing.Dict
                steps: int) -> None:
     network = make_network(kind)
     network.load_state_dict(best["network"])
-    metrics = {name: best[name] for name in Scores._fields if name != "threshold"}
+    metrics = {name: best[name] for name in Scores._fields if name != "threshold" and best[name] is not None}
     settings = {k: v for k, v in recorded(options).items() if k not in ("model", "ngf", "license")}
     training = {**settings, **source.about, "steps": steps, "best_step": best["step"], "ensonify": __version__,
                 "torch": torch.__version__}

@@ -48,6 +48,7 @@ def parse_options(words: typing.Optional[typing.Sequence[str]] = None) -> argpar
     add("data", help="dataset folder, folder with raw/ and mask/ PNG pairs, or a recipe (fresh frames from the simulator)")
     add("--out", type=pathlib.Path, required=True, help="folder for the model, the checkpoint and the curves")
     add("--model", choices=NAMES, default="unet", help="network and its training (default: %(default)s)")
+    add("--clean", action="store_true", help="unet: a second head that estimates the clean image")
     add("--ngf", type=_count(1), help="channels of the first level (default: 8; pix2pix 64)")
     length = parser.add_mutually_exclusive_group()
     length.add_argument("--steps", type=_count(1), help="optimiser steps (default: 4000)")
@@ -71,6 +72,8 @@ def parse_options(words: typing.Optional[typing.Sequence[str]] = None) -> argpar
     options.ngf = options.ngf or ngf
     options.batch = options.batch or batch
     options.lr = options.lr or lr
+    if options.clean and options.model != "unet":
+        parser.error("--clean goes with --model unet")
     if not options.steps and not options.epochs:
         options.steps = 4000
     return options

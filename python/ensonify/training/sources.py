@@ -19,11 +19,13 @@ Array = typing.Any  # numpy arrays; Debian's numpy types need parameters that sa
 
 
 class Pair(typing.NamedTuple):
-    """raw: float32 grey levels 0..255 [bins, beams]; mask: bool of the same shape; scene: what a split keeps apart."""
+    """raw: float32 grey levels 0..255 [bins, beams]; mask: bool of the same shape; scene: what a split keeps apart; clean:
+    as raw, without noise, where it was asked for."""
 
     raw: Array
     mask: Array
     scene: str
+    clean: Array = None
 
 
 class Source(typing.NamedTuple):
@@ -54,25 +56,32 @@ def spread(count: int, most: int) -> typing.List[int]:
     return [i * count // min(count, most) for i in range(min(count, most))]
 
 
-def dataset_source(folder: pathlib.Path, val: str, val_frames: int, most: typing.Optional[int]) -> Source:
+def _fields(clean: bool) -> typing.Tuple[str, ...]:
+    return ("raw", "mask", "clean") if clean else ("raw", "mask")
+
+
+def _pair(sample: typing.Mapping[str, typing.Any], clean: bool) -> Pair:
+    return Pair(_grey(sample["raw"]), sample["mask"] > 0, str(sample["place"]), _grey(sample["clean"]) if clean else None)
+
+
+def dataset_source(folder: pathlib.Path, val: str, val_frames: int, most: typing.Optional[int], clean: bool) -> Source:
     """A dataset of `ensonify generate`: its train split, and the split `val`, which shares no place with it."""
-    train, held = FrameDataset(folder, "train"), FrameDataset(folder, val)
+    train, held = (FrameDataset(folder, split, fields=_fields(clean)) for split in ("train", val))
     manifest = Dataset(folder)
     size = min(len(train), most or len(train))
     chosen = spread(len(train), size)
 
     def pair(frames: FrameDataset, number: int) -> Pair:
-        sample = frames[number]
-        return Pair(_grey(sample["raw"]), sample["mask"] > 0, str(sample["place"]))
+        return _pair(frames[number], clean)
 
     return Source(size, lambda n: pair(train, chosen[n]),
                   [functools.partial(pair, held, number) for number in spread(len(held), val_frames)],
                   {"data": manifest.name, "root_hash": manifest.root_hash, "pairs": size, "val": val})
 
 
-def recipe_source(recipe: str, seed: int, val_frames: int) -> Source:
+def recipe_source(recipe: str, seed: int, val_frames: int, clean: bool) -> Source:
     """Fresh frames of a recipe's train split, simulated as they are asked for; its val split as it stands."""
-    endless = EndlessFrames(recipe, seed=seed)
+    endless = EndlessFrames(recipe, seed=seed, fields=_fields(clean))
     made = Recipe(recipe)
     first = 0
     for split, frames in made.splits.items():
@@ -82,16 +91,12 @@ def recipe_source(recipe: str, seed: int, val_frames: int) -> Source:
     else:
         raise ConfigError(f"recipe {recipe}: has no split 'val' to choose the model by; splits: {', '.join(made.splits)}")
 
-    def drawn(n: int) -> Pair:
-        sample = endless.frame(n)
-        return Pair(_grey(sample["raw"]), sample["mask"] > 0, str(sample["place"]))
-
     @functools.lru_cache(maxsize=256)
     def of_val(index: int) -> Pair:
         frame = made.make_frame(first + index)
-        return Pair(_grey(frame.raw), frame.mask > 0, str(frame.place))
+        return _pair({name: getattr(frame, name) for name in (*_fields(clean), "place")}, clean)
 
-    return Source(None, drawn, [functools.partial(of_val, i) for i in spread(made.splits["val"], val_frames)],
+    return Source(None, lambda n: _pair(endless.frame(n), clean), [functools.partial(of_val, i) for i in spread(made.splits["val"], val_frames)],
                   {"data": f"fresh frames of recipe {made.name}", "seed": seed, "val": "val"})
 
 

@@ -41,9 +41,9 @@ def main():
         padded = numpy.pad(image, [(0, -side % multiple) for side in image.shape], mode="reflect")
         with torch.no_grad():
             # Between no and yes, where errors would show.
-            network.up[0].weight.div_(network(to_input(padded, kind)[None, None]).std())
+            network.up[0].weight.div_(network(to_input(torch.from_numpy(padded), kind)[None, None]).std())
         with torch.no_grad():  # not folded: by the definition of batch normalisation
-            output = network(to_input(padded, kind)[None, None])[0, 0, :70, :50]
+            output = network(to_input(torch.from_numpy(padded), kind)[None, None])[0, 0, :70, :50]
             output = torch.sigmoid(output) if name == "unet" else (torch.tanh(output) + 1) / 2
         write_model(HERE, network, kind, threshold=0.5, license="BSD-3-Clause", metrics={}, training={"data": "none"})
         for suffix in (".onnx", ".json"):

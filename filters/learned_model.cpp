@@ -61,7 +61,6 @@ Network read_network(const fs::path& onnx) {
 
 /// Its first rows and columns.
 Image2<float> cut(const Image2<float>& image, int rows, int columns) {
-  if (image.rows() == rows && image.columns() == columns) return image;
   Image2<float> part(rows, columns);
   for (int i = 0; i < rows; ++i) std::ranges::copy(image.row(i).first(columns), part.row(i).begin());
   return part;
@@ -84,7 +83,9 @@ LearnedOutput LearnedModel::outputs(const Image2<float>& grey) const {
   for (float& pixel : image.pixels()) pixel = std::clamp(pixel, 0.0F, 255.0F) * scale + offset;
   try {
     std::vector<Image2<float>> heads = network_.run(image);
-    for (Image2<float>& head : heads) head = cut(head, grey.rows(), grey.columns());
+    if (image.size() != grey.size()) {
+      for (Image2<float>& head : heads) head = cut(head, grey.rows(), grey.columns());
+    }
     LearnedOutput output{std::move(heads.front()), {}};
     if (cleans()) output.clean = std::move(heads.back());
     return output;

@@ -13,7 +13,7 @@
 namespace ensonify {
 
 struct Network::State {
-  explicit State(const OnnxFile& file) : needs(check_network(file)), plan(plan_network(file, network_block())) {}
+  explicit State(const OnnxFile& file) : needs(check_network(file)), weights(plan_network(file)) {}
 
   using Workspace = std::unique_ptr<NetworkWorkspace>;
 
@@ -30,7 +30,7 @@ struct Network::State {
       // Room for the new one: those of other sizes, longest idle first, where every thread could have had one.
       if (idle.size() >= static_cast<std::size_t>(tbb::this_task_arena::max_concurrency())) idle.erase(idle.begin());
     }
-    return std::make_unique<NetworkWorkspace>(plan, engine, rows, columns);
+    return std::make_unique<NetworkWorkspace>(weights, rows, columns);
   }
   void give_back(Workspace workspace) {
     const std::lock_guard lock(mutex);
@@ -38,8 +38,7 @@ struct Network::State {
   }
 
   OnnxNeeds needs;
-  NetworkPlan plan;
-  dnnl::engine engine{dnnl::engine::kind::cpu, 0};
+  NetworkWeights weights;
   std::mutex mutex;
   std::vector<Workspace> idle;
 };
@@ -62,10 +61,12 @@ std::vector<Image2<float>> Network::run(const Image2<float>& image) const {
     std::ranges::copy(image.pixels(), workspace->image().begin());
     // Isolated: a thread that waits for a layer must not begin another image.
     tbb::this_task_arena::isolate([&] { workspace->run(); });
-    std::vector<Image2<float>> heads;
-    for (int head = 0; head < this->heads(); ++head) {
-      Image2<float>& plane = heads.emplace_back(image.rows(), image.columns());
-      std::ranges::copy(workspace->output(head), plane.pixels().begin());
+    const std::span<const float> output = workspace->output();
+    const std::size_t count = static_cast<std::size_t>(this->heads());
+    std::vector<Image2<float>> heads(count, Image2<float>(image.rows(), image.columns()));
+    for (std::size_t head = 0; head < count; ++head) {
+      const std::span<float> plane = heads[head].pixels();
+      for (std::size_t i = 0; i < plane.size(); ++i) plane[i] = output[i * count + head];
     }
     state_->give_back(std::move(workspace));
     return heads;

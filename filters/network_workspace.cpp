@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <new>
 
 #include "ensonify/core/available_memory.hpp"
 #include "ensonify/core/error.hpp"
@@ -13,11 +14,18 @@
 namespace ensonify {
 namespace {
 
-using Tag = dnnl::memory::format_tag;
+using dnnl::memory;
 
-/// Rows of a task where a layer can be cut into rows: few enough to stay in the cache until they are finished.
-constexpr int stripe = 32;
+constexpr auto real = memory::data_type::f32;
+constexpr auto by_pixel = memory::format_tag::nhwc;
+
+/// Tasks: enough for some cores, but no fewer rows than let a kernel's weights pay, nor more numbers than stay in a
+/// core's cache until they are written to the sinks.
+constexpr int least_tasks = 8, least_rows = 4;
+constexpr std::size_t most_floats = 1 << 15;
 constexpr std::size_t line_floats = 16;
+
+std::size_t to_lines(std::size_t floats) { return (floats + line_floats - 1) / line_floats * line_floats; }
 
 /// oneDNN asks OpenMP for the number of threads when it compiles and when it runs; with one, it starts no others.
 class OneThread {
@@ -31,200 +39,191 @@ class OneThread {
   int before_ = omp_get_max_threads();
 };
 
-std::size_t to_lines(std::size_t floats) { return (floats + line_floats - 1) / line_floats * line_floats; }
-
-/// Output channels of a task, in blocks: enough tasks for some cores, enough work for oneDNN's kernels in each.
-int blocks_a_task(int blocks) { return blocks >= 4 ? 2 : 1; }
-
-dnnl::primitive_attr attributes_of(const NetworkStep& step) {
-  dnnl::primitive_attr attributes;
-  attributes.set_scratchpad_mode(dnnl::scratchpad_mode::user);
-  if (step.slope) {
-    dnnl::post_ops activation;
-    activation.append_eltwise(1.0F, dnnl::algorithm::eltwise_relu, *step.slope, 0.0F);
-    attributes.set_post_ops(activation);
+/// `size` numbers at a time, which the compiler unrolls.
+template <int size>
+void copy_blocks(const float* from, int from_step, float* to, int to_step, int channels, int pixels) {
+  if (channels == size) {
+    for (int x = 0; x < pixels; ++x, from += from_step, to += to_step) std::copy_n(from, size, to);
+    return;
   }
-  return attributes;
+  for (int x = 0; x < pixels; ++x, from += from_step, to += to_step) {
+    for (int c = 0; c < channels; c += size) std::copy_n(from + c, size, to + c);
+  }
+}
+
+/// The first `channels` of each pixel; the steps lead from pixel to pixel.
+void copy_pixels(const float* from, int from_step, float* to, int to_step, int channels, int pixels) {
+  if (from_step == channels && to_step == channels) {
+    std::copy_n(from, static_cast<std::size_t>(pixels) * channels, to);
+  } else if (channels % 16 == 0) {
+    copy_blocks<16>(from, from_step, to, to_step, channels, pixels);
+  } else if (channels % 8 == 0) {
+    copy_blocks<8>(from, from_step, to, to_step, channels, pixels);
+  } else if (channels % 2 == 0) {
+    copy_blocks<2>(from, from_step, to, to_step, channels, pixels);
+  } else {
+    copy_blocks<1>(from, from_step, to, to_step, channels, pixels);
+  }
 }
 
 }  // namespace
 
-int network_block() {
-  switch (dnnl::get_effective_cpu_isa()) {
-    case dnnl::cpu_isa::avx512_core:
-    case dnnl::cpu_isa::avx512_core_vnni:
-    case dnnl::cpu_isa::avx512_core_bf16:
-    case dnnl::cpu_isa::avx512_core_amx:
-      return 16;
-    default:
-      return 8;
-  }
+memory NetworkWeights::ordered(const NetworkKernel& kernel, const memory::desc& order) const {
+  const std::lock_guard lock(mutex_);
+  const auto [begin, end] = ordered_.equal_range(&kernel);
+  const auto found = std::find_if(begin, end, [&](const auto& held) { return held.second.get_desc() == order; });
+  if (found != end) return found->second;
+  // oneDNN only reads them.
+  memory plain({{kernel.out, kernel.in, kernel.side, kernel.side}, real, memory::format_tag::oihw}, engine_,
+                     const_cast<float*>(kernel.weights.data()));
+  memory made(order, engine_);
+  dnnl::stream stream(engine_);
+  dnnl::reorder(plain, made).execute(stream, plain, made);
+  return ordered_.emplace(&kernel, made)->second;
 }
 
-NetworkWorkspace::NetworkWorkspace(const NetworkPlan& plan, const dnnl::engine& engine, int rows, int columns)
-    : plan_(plan), engine_(engine), rows_(rows), columns_(columns), memory_(nullptr, &std::free) {
+NetworkWorkspace::NetworkWorkspace(const NetworkWeights& weights, int rows, int columns)
+    : weights_(weights), rows_(rows), columns_(columns), memory_(nullptr, &std::free) {
+  const NetworkPlan& plan = weights.plan();
   std::vector<std::size_t> begins;
   std::size_t total = 0;
-  const auto available = static_cast<double>(available_memory_bytes());
-  const auto area = [&](int halvings) { return static_cast<double>(pixels(halvings)); };
-  const auto reserve = [&](double floats) {
+  const std::size_t most = available_memory_bytes() / sizeof(float);
+  const auto reserve = [&](std::size_t floats) {
     begins.push_back(total);
-    // Also below what oneDNN's kernels count in 32 bits.
-    if (floats > 0x1p31 || (static_cast<double>(total) + floats) * sizeof(float) > available) {
-      throw DataError(fmt::format("needs more memory for an image of {} x {} than there is", rows, columns));
-    }
-    total += to_lines(static_cast<std::size_t>(floats));
+    total += to_lines(floats);
+    if (total > most) throw DataError(fmt::format("needs more memory for an image of {} x {} than is free", rows, columns));
   };
-  for (const NetworkBuffer& b : plan.buffers) reserve(b.channels * area(b.halvings));
-  double scratch = 0;
-  for (const NetworkStep& step : plan.steps) {
-    if (std::holds_alternative<Transpose>(step.kind))
-      scratch = std::max(scratch, blocks_of(step) * plan.block * area(step.halvings));
-    if (std::holds_alternative<TransposeToPlanes>(step.kind)) {  // a row more on both sides of every stripe
-      const int height_in = height(step.halvings + 1), stripes = (height_in + stripe - 1) / stripe;
-      scratch = std::max(scratch, 16.0 * step.channels * (height_in + 2 * stripes) * width(step.halvings + 1));
-    }
-  }
-  reserve(scratch);
+  for (const NetworkBuffer& buffer : plan.buffers) reserve(pixels(buffer.halvings) * buffer.channels);
   memory_.reset(static_cast<float*>(std::aligned_alloc(line_floats * sizeof(float), total * sizeof(float))));
   if (!memory_) throw std::bad_alloc();
-  for (std::size_t begin : begins) buffers_.push_back(memory_.get() + begin);
-  scratch_ = buffers_.back();
-
+  for (const std::size_t begin : begins) buffers_.push_back(memory_.get() + begin);
   const OneThread one;
-  for (const NetworkStep& step : plan.steps) {
-    std::visit([&](const auto& kind) { add(step, kind); }, step.kind);
-  }
+  for (const NetworkStep& step : plan.steps) steps_.push_back(tasks_of(step));
 }
 
-NetworkWorkspace::Call NetworkWorkspace::call(const NetworkKernel& kernel, const Window& window, int halvings,
-                                              int stride, int block, int blocks, float* to,
-                                              const dnnl::primitive_attr& attributes) const {
-  using dnnl::memory;
-  const bool wide = plan_.block == 16, planes = kernel.in == 1;
-  const Tag in_blocks = wide ? Tag::nChw16c : Tag::nChw8c;
-  const Tag weights_of_blocks = wide ? Tag::OIhw16i16o : Tag::OIhw8i8o;
-  const Tag weights_of_planes = wide ? Tag::Ohwi16o : Tag::Ohwi8o;
-  constexpr auto real = memory::data_type::f32;
-  const int out = blocks * plan_.block, side = kernel.side, in_width = width(halvings);
-  const auto steps = [&](int length, int before, int after) { return (length + before + after - side) / stride + 1; };
-  const memory::desc source({1, kernel.in, window.rows, in_width}, real, planes ? Tag::nchw : in_blocks);
-  const memory::desc weights({out, kernel.in, side, side}, real, planes ? weights_of_planes : weights_of_blocks);
-  const memory::desc bias({out}, real, Tag::x);
-  const memory::desc result({1, out, steps(window.rows, window.above, window.below),
-                             steps(in_width, window.left, window.right)},
-                            real, in_blocks);
+std::size_t NetworkWorkspace::result_row(const NetworkStep& step) const {
+  return static_cast<std::size_t>(width(step.halvings)) * step.channels;
+}
+
+std::size_t NetworkWorkspace::raw_row(const NetworkStep& step) const {
+  const bool grid = std::holds_alternative<Transpose>(step.kind);
+  return grid ? static_cast<std::size_t>(width(step.halvings + 1) + 1) * 4 * step.channels : result_row(step);
+}
+
+std::pair<int, int> NetworkWorkspace::rows_of(const NetworkStep& step) const {
+  const bool grid = std::holds_alternative<Transpose>(step.kind);
+  const int all = grid ? height(step.halvings + 1) + 1 : height(step.halvings);
+  const int cached = static_cast<int>(most_floats / raw_row(step));
+  const int wanted = std::max(least_rows, std::min(cached, (all + least_tasks - 1) / least_tasks));
+  const int tasks = (all + wanted - 1) / wanted;
+  return {all, (all + tasks - 1) / tasks};
+}
+
+std::vector<NetworkWorkspace::Task> NetworkWorkspace::tasks_of(const NetworkStep& step) const {
+  const auto [all, rows] = rows_of(step);
+  std::vector<Task> tasks;
+  for (int row = 0; row < all; row += rows) {
+    Task& task = tasks.emplace_back(Task{&step, row, std::min(rows, all - row)});
+    std::visit([&](const auto& kind) { compile(task, kind); }, step.kind);
+  }
+  return tasks;
+}
+
+void NetworkWorkspace::compile(Task& task, const Convolve& convolve) const {
+  const int side = convolve.kernel.side, stride = side == 4 ? 2 : 1, pad = (side - 1) / 2;
+  const int first = task.row * stride - pad;
+  compile(task, convolve.kernel, first, first + (task.rows - 1) * stride + side, stride, pad);
+}
+
+void NetworkWorkspace::compile(Task& task, const Transpose& transpose) const {
+  compile(task, transpose.kernel, task.row - 1, task.row + task.rows, 1, 1);
+}
+
+/// From rows of the source, zeros where there are none; `pad` columns of zeros on both sides.
+void NetworkWorkspace::compile(Task& task, const NetworkKernel& kernel, int first_row, int end_row, int stride,
+                               int pad) const {
+  const int source_buffer = task.step->source, halvings = weights_.plan().buffers[source_buffer].halvings;
+  const int from = std::max(first_row, 0), to = std::min(end_row, height(halvings)), columns = width(halvings);
+  const memory::desc source({1, kernel.in, to - from, columns}, real, by_pixel);
+  const memory::desc any_order({kernel.out, kernel.in, kernel.side, kernel.side}, real, memory::format_tag::any);
+  const memory::desc bias({kernel.out}, real, memory::format_tag::x);
+  const memory::desc result({1, kernel.out, task.rows, (columns + 2 * pad - kernel.side) / stride + 1}, real, by_pixel);
+  dnnl::primitive_attr attributes;
+  attributes.set_scratchpad_mode(dnnl::scratchpad_mode::user);
+  if (task.step->slope) {
+    dnnl::post_ops activation;
+    activation.append_eltwise(1.0F, dnnl::algorithm::eltwise_relu, *task.step->slope, 0.0F);
+    attributes.set_post_ops(activation);
+  }
+  const dnnl::engine& engine = weights_.engine();
   const dnnl::convolution_forward::primitive_desc made(
-      {dnnl::prop_kind::forward_inference, dnnl::algorithm::convolution_direct, source, weights, bias, result,
-       {stride, stride}, {window.above, window.left}, {window.below, window.right}},
-      attributes, engine_);
-  // oneDNN only reads them.
-  float* const first_weight = const_cast<float*>(kernel.weights.data()) +
-                              static_cast<std::size_t>(block) * plan_.block * kernel.in * side * side;
-  float* const first_bias = const_cast<float*>(kernel.bias.data()) + block * plan_.block;
-  return {dnnl::convolution_forward(made),
-          {{DNNL_ARG_SRC, memory(source, engine_, window.source)},
-           {DNNL_ARG_WEIGHTS, memory(weights, engine_, first_weight)},
-           {DNNL_ARG_BIAS, memory(bias, engine_, first_bias)},
-           {DNNL_ARG_DST, memory(result, engine_, to)},
-           {DNNL_ARG_SCRATCHPAD, memory(made.scratchpad_desc(), engine_)}}};
-}
-
-void NetworkWorkspace::add(const NetworkStep& step, const Spread&) {
-  Phase phase{&step, {}};
-  for (int row = 0; row < rows_; row += stripe) {
-    phase.tasks.push_back({{}, Closing::spread, 0, 1, row, std::min(stripe, rows_ - row), nullptr});
-  }
-  phases_.push_back(std::move(phase));
-}
-
-void NetworkWorkspace::add(const NetworkStep& step, const Convolve& convolve) {
-  const NetworkKernel& kernel = convolve.kernel;
-  const int side = kernel.side, stride = side == 4 ? 2 : 1, pad = (side - 1) / 2;
-  const int halvings = plan_.buffers[step.source].halvings, in_rows = height(halvings), out_rows = height(step.halvings);
-  const int blocks = blocks_of(step);
-  // Rows of one block, or one plane, lie one after the other, so that some of them are an image of their own.
-  const bool striped = kernel.in <= plan_.block;
-  const int group = striped ? 1 : blocks_a_task(blocks), rows = striped ? stripe : out_rows;
-  const dnnl::primitive_attr attributes = attributes_of(step);
-  Phase phase{&step, {}};
-  for (int block = 0; block < blocks; block += group) {
-    for (int row = 0; row < out_rows; row += rows) {
-      Task task{{}, Closing::activate, block, std::min(group, blocks - block), row, std::min(rows, out_rows - row),
-                nullptr};
-      const int first = row * stride - pad, end = (row + task.rows - 1) * stride - pad + side;
-      const int from = std::max(first, 0), to = std::min(end, in_rows);
-      const Window window{buffers_[step.source] + static_cast<std::size_t>(from) * width(halvings) * kernel.in,
-                          to - from, from - first, end - to, pad, pad};
-      task.calls.push_back(call(kernel, window, halvings, stride, block, task.blocks, raw_row(step, block, row).data(),
-                                attributes));
-      phase.tasks.push_back(std::move(task));
-    }
-  }
-  phases_.push_back(std::move(phase));
-}
-
-void NetworkWorkspace::add(const NetworkStep& step, const Transpose& transpose) {
-  const int halvings = step.halvings + 1, blocks = blocks_of(step), group = blocks_a_task(blocks);
-  const dnnl::primitive_attr attributes = attributes_of(step);
-  Phase convolutions{&step, {}}, interleaving{&step, {}};
-  for (int parity = 0; parity < 4; ++parity) {
-    const int a = parity / 2, b = parity % 2;
-    const Window window{buffers_[step.source], height(halvings), 1 - a, a, 1 - b, b};
-    for (int block = 0; block < blocks; block += group) {
-      Task task;
-      float* const to = scratch_ + (static_cast<std::size_t>(parity) * blocks + block) * pixels(halvings) * plan_.block;
-      task.calls.push_back(call(transpose.kernels[parity], window, halvings, 1, block, std::min(group, blocks - block),
-                                to, attributes));
-      convolutions.tasks.push_back(std::move(task));
-    }
-  }
-  const int out_rows = height(step.halvings);
-  for (int block = 0; block < blocks; ++block) {
-    for (int row = 0; row < out_rows; row += stripe) {
-      interleaving.tasks.push_back(
-          {{}, Closing::interleave, block, 1, row, std::min(stripe, out_rows - row), nullptr});
-    }
-  }
-  phases_.push_back(std::move(convolutions));
-  phases_.push_back(std::move(interleaving));
-}
-
-void NetworkWorkspace::add(const NetworkStep& step, const TransposeToPlanes& transpose) {
-  const int halvings = step.halvings + 1, in_rows = height(halvings);
-  const dnnl::primitive_attr first = attributes_of(step);
-  dnnl::primitive_attr others = attributes_of(step);
-  dnnl::post_ops sum;
-  sum.append_sum();
-  others.set_post_ops(sum);
-  Phase phase{&step, {}};
-  float* cells = scratch_;
-  for (int row = 0; row < in_rows; row += stripe) {
-    Task task{{}, Closing::gather, 0, 1, row, std::min(stripe, in_rows - row), cells};
-    const int from = std::max(row - 1, 0), to = std::min(row + task.rows + 1, in_rows);
-    for (std::size_t i = 0; i < transpose.kernels.size(); ++i) {
-      const NetworkKernel& kernel = transpose.kernels[i];
-      float* const source = buffers_[step.source] + (i * in_rows + from) * width(halvings) * plan_.block;
-      task.calls.push_back(call(kernel, {source, to - from, 0, 0, 0, 0}, halvings, 1, 0, kernel.out / plan_.block,
-                                cells, i == 0 ? first : others));
-    }
-    cells += static_cast<std::size_t>(16) * step.channels * (to - from) * width(halvings);
-    phase.tasks.push_back(std::move(task));
-  }
-  phases_.push_back(std::move(phase));
+      {dnnl::prop_kind::forward_inference, dnnl::algorithm::convolution_direct, source, any_order, bias, result,
+       {stride, stride}, {from - first_row, pad}, {end_row - to, pad}},
+      attributes, engine);
+  task.convolution = dnnl::convolution_forward(made);
+  float* const pixels = buffers_[source_buffer] + static_cast<std::size_t>(from) * columns * kernel.in;
+  task.arguments = {{DNNL_ARG_SRC, memory(source, engine, pixels)},
+                    {DNNL_ARG_WEIGHTS, weights_.ordered(kernel, made.weights_desc())},
+                    {DNNL_ARG_BIAS, memory(bias, engine, const_cast<float*>(kernel.bias.data()))},
+                    {DNNL_ARG_DST, memory(result, engine, DNNL_MEMORY_NONE)},
+                    {DNNL_ARG_SCRATCHPAD, memory(made.scratchpad_desc(), engine)}};
 }
 
 void NetworkWorkspace::run() {
-  for (const Phase& phase : phases_) {
-    parallel_for(static_cast<int>(phase.tasks.size()), [&](int i) {
-      const Task& task = phase.tasks[i];
-      if (!task.calls.empty()) {
-        const OneThread one;
-        dnnl::stream stream(engine_);
-        for (const Call& call : task.calls) call.primitive.execute(stream, call.arguments);
-      }
-      close(*phase.step, task);
-    });
+  for (std::vector<Task>& tasks : steps_) {
+    parallel_for(static_cast<int>(tasks.size()), [&](int i) { run(tasks[i]); });
+  }
+}
+
+void NetworkWorkspace::run(Task& task) {
+  const NetworkStep& step = *task.step;
+  const std::size_t raw_floats = to_lines(task.rows * raw_row(step));
+  std::vector<float>& scratch = scratch_.local();
+  if (scratch.size() < raw_floats + result_row(step)) scratch.resize(raw_floats + result_row(step));
+  const float* raw = buffers_[step.source] + task.row * raw_row(step);  // where nothing is convolved
+  if (task.convolution) {
+    const OneThread one;
+    dnnl::stream stream(weights_.engine());
+    task.arguments.at(DNNL_ARG_DST).set_data_handle(scratch.data());
+    task.convolution.execute(stream, task.arguments);
+    raw = scratch.data();
+  }
+  const bool grid = std::holds_alternative<Transpose>(step.kind);
+  const int channels = step.channels, columns = width(grid ? step.halvings + 1 : step.halvings);
+  const std::span<float> activated{scratch.data() + raw_floats, result_row(step)};
+  for (int row = task.row; row < task.row + task.rows; ++row, raw += raw_row(step)) {
+    if (!grid) {
+      write_row(step, row, activated, [&](float* to, int to_step) {
+        copy_pixels(raw, channels, to, to_step, channels, columns);
+      });
+      continue;
+    }
+    // The odd row of the result before twice the grid's row, and the even one of that number.
+    for (const int a : {1, 0}) {
+      if (2 * row - a < 0 || 2 * row - a >= height(step.halvings)) continue;
+      write_row(step, 2 * row - a, activated, [&](float* to, int to_step) {
+        for (const int b : {0, 1}) {
+          const float* const from = raw + (2 * a + b + 4 * b) * channels;
+          copy_pixels(from, 4 * channels, to + b * to_step, 2 * to_step, channels, columns);
+        }
+      });
+    }
+  }
+}
+
+/// To every sink. `place(to, to_step)` copies the row, `to_step` numbers from pixel to pixel.
+void NetworkWorkspace::write_row(const NetworkStep& step, int row, std::span<float> activated, const auto& place) {
+  for (const NetworkSink& sink : step.sinks) {
+    const int columns = width(step.halvings), channels = weights_.plan().buffers[sink.buffer].channels;
+    float* const to = buffers_[sink.buffer] + static_cast<std::size_t>(row) * columns * channels + sink.channel;
+    if (sink.activations.empty() || channels == step.channels) {
+      place(to, channels);
+      activate(sink.activations, {to, activated.size()});
+    } else {
+      place(activated.data(), step.channels);
+      activate(sink.activations, activated);
+      copy_pixels(activated.data(), step.channels, to, channels, step.channels, columns);
+    }
   }
 }
 

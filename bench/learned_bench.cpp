@@ -80,7 +80,8 @@ void one_image(benchmark::State& state, const Network& network, double multiplic
 void many_images(benchmark::State& state, const Network& network) {
   const Image2<float> image(side, side, 0.25F);
   double best_s = INFINITY;
-  for (auto _ : state) best_s = std::min(best_s, seconds_of([&] { parallel_for(16, [&](int) { network.run(image); }); }));
+  for (auto _ : state)
+    best_s = std::min(best_s, seconds_of([&] { parallel_for(16, [&](int) { network.run(image); }); }));
   state.counters["ms_an_image"] = 1e3 * best_s / 16;
 }
 
@@ -107,14 +108,15 @@ int main(int argc, char** argv) {
   for (int i = 0; i < 2; ++i) {
     const auto& [network, count] = networks[i];
     for (const int threads : {1, cores}) {
-      benchmark::RegisterBenchmark(fmt::format("unet/ngf:{}/cores:{}", 8 << i, threads).c_str(),
-                                   [&network = network, count = count, threads](benchmark::State& s) {
-                                     one_image(s, network, count, threads);
-                                   })->Unit(benchmark::kMillisecond);
+      benchmark::RegisterBenchmark(
+          fmt::format("unet/ngf:{}/cores:{}", 8 << i, threads).c_str(),
+          [&network = network, count = count, threads](benchmark::State& s) { one_image(s, network, count, threads); })
+          ->Unit(benchmark::kMillisecond);
     }
-    benchmark::RegisterBenchmark(fmt::format("16_images/ngf:{}", 8 << i).c_str(),
-                                 [&network = network](benchmark::State& s) { many_images(s, network); })
-        ->Unit(benchmark::kMillisecond);
+    benchmark::RegisterBenchmark(fmt::format("16_images/ngf:{}", 8 << i).c_str(), [&network =
+                                                                                       network](benchmark::State& s) {
+      many_images(s, network);
+    })->Unit(benchmark::kMillisecond);
   }
   for (const std::string& name : library_names("filters/models", ".onnx")) {
     const std::filesystem::path file = resolve_name("filters/models", name, ".onnx");

@@ -8,8 +8,8 @@
 
 namespace ensonify {
 
-/// A network that is ready to run, by oneDNN's convolutions. Any number of threads may use one at once. Images of a size
-/// that came before find their memory and compiled convolutions again.
+/// A network that is ready to run, by oneDNN's convolutions. Any number of threads may use one at once. Images of a
+/// size that came before find their memory and compiled convolutions again.
 class Network {
  public:
   /// Throws DataError as check_network does.
@@ -23,8 +23,8 @@ class Network {
   /// Channels of the result, 1 or 2.
   int heads() const;
 
-  /// The result's channels, each of the size of the image, on the threads of the current oneTBB arena: the same bits for
-  /// any number of them. Throws DataError where the image is too large, or a side is no multiple.
+  /// The result's channels, each of the size of the image, on the threads of the current oneTBB arena: the same bits
+  /// for any number of them. Throws DataError where the image is too large, or a side is no multiple.
   std::vector<Image2<float>> run(const Image2<float>& image) const;
 
  private:

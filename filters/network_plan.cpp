@@ -99,8 +99,8 @@ class Planner {
     auto value = weights.values.begin();  // [in][out][row][column]
     for (int i = 0; i < in; ++i) {
       for (int o = 0; o < out; ++o) {
-        // Input row y adds to the rows 2 y - 1 + row: row 1 of the kernel to the even one of grid row y, 3 to that of the
-        // next grid row, 2 and 0 to the odd ones.
+        // Input row y adds to the rows 2 y - 1 + row: row 1 of the kernel to the even one of grid row y, 3 to that of
+        // the next grid row, 2 and 0 to the odd ones.
         for (int cell = 0; cell < 16; ++cell) {
           const int row = cell / 4, column = cell % 4, a = 1 - row % 2, b = 1 - column % 2;
           const std::size_t channel = static_cast<std::size_t>(2 * a + b) * out + o;

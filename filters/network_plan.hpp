@@ -38,10 +38,10 @@ struct Copy {};
 struct Convolve {
   NetworkKernel kernel;
 };
-/// A transposed convolution of side 4 and stride 2: the result (2 y + a, 2 x + b), for each parity a, b, is a convolution
-/// of side 2 that sees the rows y - 1 + a, y + a and such columns. So one convolution of side 2 over a grid of a row and a
-/// column more gives all: channel c of the result (2 y + a, 2 x + b) is channel (2 a + b) out + c of cell (y + a, x + b),
-/// which sees the rows and columns before it and of its own number.
+/// A transposed convolution of side 4 and stride 2: the result (2 y + a, 2 x + b), for each parity a, b, is a
+/// convolution of side 2 that sees the rows y - 1 + a, y + a and such columns. So one convolution of side 2 over a grid
+/// of a row and a column more gives all: channel c of the result (2 y + a, 2 x + b) is channel (2 a + b) out + c of
+/// cell (y + a, x + b), which sees the rows and columns before it and of its own number.
 struct Transpose {
   NetworkKernel kernel;
 };

@@ -75,7 +75,7 @@ memory NetworkWeights::ordered(const NetworkKernel& kernel, const memory::desc& 
   if (found != end) return found->second;
   // oneDNN only reads them.
   memory plain({{kernel.out, kernel.in, kernel.side, kernel.side}, real, memory::format_tag::oihw}, engine_,
-                     const_cast<float*>(kernel.weights.data()));
+               const_cast<float*>(kernel.weights.data()));
   memory made(order, engine_);
   dnnl::stream stream(engine_);
   dnnl::reorder(plain, made).execute(stream, plain, made);
@@ -91,7 +91,8 @@ NetworkWorkspace::NetworkWorkspace(const NetworkWeights& weights, int rows, int 
   const auto reserve = [&](std::size_t floats) {
     begins.push_back(total);
     total += to_lines(floats);
-    if (total > most) throw DataError(fmt::format("needs more memory for an image of {} x {} than is free", rows, columns));
+    if (total > most)
+      throw DataError(fmt::format("needs more memory for an image of {} x {} than is free", rows, columns));
   };
   for (const NetworkBuffer& buffer : plan.buffers) reserve(pixels(buffer.halvings) * buffer.channels);
   memory_.reset(static_cast<float*>(std::aligned_alloc(line_floats * sizeof(float), total * sizeof(float))));
@@ -156,10 +157,16 @@ void NetworkWorkspace::compile(Task& task, const NetworkKernel& kernel, int firs
     attributes.set_post_ops(activation);
   }
   const dnnl::engine& engine = weights_.engine();
-  const dnnl::convolution_forward::primitive_desc made(
-      {dnnl::prop_kind::forward_inference, dnnl::algorithm::convolution_direct, source, any_order, bias, result,
-       {stride, stride}, {from - first_row, pad}, {end_row - to, pad}},
-      attributes, engine);
+  const dnnl::convolution_forward::primitive_desc made({dnnl::prop_kind::forward_inference,
+                                                        dnnl::algorithm::convolution_direct,
+                                                        source,
+                                                        any_order,
+                                                        bias,
+                                                        result,
+                                                        {stride, stride},
+                                                        {from - first_row, pad},
+                                                        {end_row - to, pad}},
+                                                       attributes, engine);
   task.convolution = dnnl::convolution_forward(made);
   float* const pixels = buffers_[source_buffer] + static_cast<std::size_t>(from) * columns * kernel.in;
   task.arguments = {{DNNL_ARG_SRC, memory(source, engine, pixels)},
@@ -193,9 +200,8 @@ void NetworkWorkspace::run(Task& task) {
   const std::span<float> activated{scratch.data() + raw_floats, result_row(step)};
   for (int row = task.row; row < task.row + task.rows; ++row, raw += raw_row(step)) {
     if (!grid) {
-      write_row(step, row, activated, [&](float* to, int to_step) {
-        copy_pixels(raw, channels, to, to_step, channels, columns);
-      });
+      write_row(step, row, activated,
+                [&](float* to, int to_step) { copy_pixels(raw, channels, to, to_step, channels, columns); });
       continue;
     }
     // The odd row of the result before twice the grid's row, and the even one of that number.

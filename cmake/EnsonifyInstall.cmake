@@ -14,6 +14,7 @@ write_basic_package_version_file(${PROJECT_BINARY_DIR}/ensonifyConfigVersion.cma
 install(FILES
   ${PROJECT_BINARY_DIR}/ensonifyConfig.cmake
   ${PROJECT_BINARY_DIR}/ensonifyConfigVersion.cmake
+  ${PROJECT_SOURCE_DIR}/cmake/FindOneDNN.cmake
   ${PROJECT_SOURCE_DIR}/cmake/FindOpenCVModules.cmake
   ${PROJECT_SOURCE_DIR}/cmake/ensonify_data_folder.cpp.in
   DESTINATION ${package_folder})

@@ -17,7 +17,7 @@ namespace ensonify {
 
 /// The closed set. A new method is a struct with its parameters, an `apply`, and an entry here.
 using FilterMethod = std::variant<Lee, LeeEnhanced, Kuan, Frost, GammaMap, Srad, Anisodiff, Wavelet, Wiener, Median,
-                                  Bilateral, Nlm, Cfar, Unet, Pix2Pix, Threshold, Mask, Unsharp, Equalize>;
+                                  Bilateral, Nlm, Cfar, Unet, UnetClean, Pix2Pix, Threshold, Mask, Unsharp, Equalize>;
 
 /// Despecklers may work on 255 ln(1 + I) / ln 256, where speckle is additive; levels below 0 count as 0.
 enum class FilterDomain { linear, log };

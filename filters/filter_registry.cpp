@@ -104,7 +104,10 @@ void for_parameters(Method& method, const Visit& visit) {
 
 constexpr const char* domain_about = "log: on 255 ln(1 + I) / ln 256";
 
-bool has_domain(const FilterMethod& method) { return role_of(method) == FilterRole::despeckles; }
+/// A network has learned the scale on which it was trained.
+bool has_domain(const FilterMethod& method) {
+  return role_of(method) == FilterRole::despeckles && !std::holds_alternative<UnetClean>(method);
+}
 
 template <std::size_t... Kinds>
 std::vector<FilterMethod> every_method(std::index_sequence<Kinds...>) {
@@ -186,6 +189,7 @@ void assign_parameter(FilterStep& step, const std::string& assignment) {
 void check_filter(const FilterStep& step) {
   if (const auto* diffusion = std::get_if<Anisodiff>(&step.method)) check(*diffusion);
   if (const auto* network = std::get_if<Unet>(&step.method)) check(*network);
+  if (const auto* network = std::get_if<UnetClean>(&step.method)) check(*network);
   if (const auto* network = std::get_if<Pix2Pix>(&step.method)) check(*network);
   const auto check_classes = [](const char* name, double cu, double cmax) {
     if (cmax > cu) return;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <type_traits>
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/filters/learned_model.hpp"
@@ -14,9 +14,15 @@ template <typename Method>
 const LearnedModel& model_of(const Method& method) {
   try {
     const LearnedModel& model = method.model.loaded();
-    if (model.card().network == method.name) return model;
-    throw ConfigError(
-        fmt::format("model {} is a {} network; use that method", method.model.name(), model.card().network));
+    if (model.card().network != method.network) {
+      throw ConfigError(
+          fmt::format("model {} is a {} network; use that method", method.model.name(), model.card().network));
+    }
+    if (std::is_same_v<Method, UnetClean> && !model.cleans()) {
+      throw ConfigError(fmt::format("model {} gives no clean image, only probabilities of an echo; use method {}",
+                                    method.model.name(), method.network));
+    }
+    return model;
   } catch (const ConfigError& e) {
     throw ConfigError(fmt::format("{}: {}", method.name, e.what()));
   }
@@ -34,8 +40,14 @@ Image2<float> mask_of(const Method& method, const GreyImage& image) {
 }  // namespace
 
 Image2<float> apply(const Unet& method, const GreyImage& image) { return mask_of(method, image); }
+Image2<float> apply(const UnetClean& method, const GreyImage& image) {
+  Image2<float> clean = model_of(method).outputs(image.grey).clean.value();
+  for (float& pixel : clean.pixels()) pixel *= 255.0F;
+  return clean;
+}
 Image2<float> apply(const Pix2Pix& method, const GreyImage& image) { return mask_of(method, image); }
 void check(const Unet& method) { model_of(method); }
+void check(const UnetClean& method) { model_of(method); }
 void check(const Pix2Pix& method) { model_of(method); }
 
 }  // namespace ensonify

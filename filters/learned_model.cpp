@@ -2,17 +2,15 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <fstream>
 #include <iterator>
-#include <mutex>
-#include <opencv2/dnn.hpp>
 #include <opencv2/imgproc.hpp>
 #include <vector>
 
 #include "ensonify/config/reader.hpp"
 #include "ensonify/core/error.hpp"
 #include "ensonify/filters/mat_view.hpp"
-#include "ensonify/filters/onnx_rules.hpp"
 
 namespace ensonify {
 namespace fs = std::filesystem;
@@ -52,78 +50,47 @@ ModelCard read_card(const fs::path& onnx) {
   }
 }
 
-}  // namespace
-
-struct LearnedModel::Networks {
-  std::string where, bytes;
-  ModelCard card;
-  int multiple = 1;
-  std::mutex mutex;
-  std::vector<cv::dnn::Net> idle;
-
-  cv::dnn::Net take() {
-    {
-      const std::lock_guard lock(mutex);
-      if (!idle.empty()) {
-        cv::dnn::Net net = std::move(idle.back());
-        idle.pop_back();
-        return net;
-      }
-    }
-    cv::dnn::Net net = cv::dnn::readNetFromONNX(bytes.data(), bytes.size());
-    net.setPreferableBackend(cv::dnn::DNN_BACKEND_OPENCV);
-    net.setPreferableTarget(cv::dnn::DNN_TARGET_CPU);
-    return net;
-  }
-  void give_back(cv::dnn::Net net) {
-    const std::lock_guard lock(mutex);
-    idle.push_back(std::move(net));
-  }
-};
-
-LearnedModel::LearnedModel(const fs::path& onnx) : networks_(std::make_unique<Networks>()) {
-  networks_->where = onnx.string();
-  networks_->bytes = read_bytes(onnx);
+Network read_network(const fs::path& onnx) {
+  const std::string bytes = read_bytes(onnx);
   try {
-    networks_->multiple = check_network(read_onnx(networks_->bytes)).multiple;
-    networks_->give_back(networks_->take());
+    return Network(read_onnx(bytes));
   } catch (const DataError& e) {
     throw DataError(fmt::format("{}: {}", onnx.string(), e.what()));
-  } catch (const cv::Exception& e) {
-    throw DataError(fmt::format("{}: no network that OpenCV can run ({})", onnx.string(), e.err));
   }
-  networks_->card = read_card(onnx);
 }
 
-LearnedModel::~LearnedModel() = default;
+/// Its first rows and columns.
+Image2<float> cut(const Image2<float>& image, int rows, int columns) {
+  Image2<float> part(rows, columns);
+  for (int i = 0; i < rows; ++i) std::ranges::copy(image.row(i).first(columns), part.row(i).begin());
+  return part;
+}
 
-const ModelCard& LearnedModel::card() const { return networks_->card; }
+}  // namespace
 
-Image2<float> LearnedModel::probability(const Image2<float>& grey) const {
-  const auto missing = [&](int side) {
-    return (networks_->multiple - side % networks_->multiple) % networks_->multiple;
-  };
-  const auto [low, high] = networks_->card.input_range;
-  cv::Mat image;
-  cv::copyMakeBorder(mat_view(grey), image, 0, missing(grey.rows()), 0, missing(grey.columns()),
+LearnedModel::LearnedModel(const fs::path& onnx)
+    : where_(onnx.string()), network_(read_network(onnx)), card_(read_card(onnx)) {}
+
+LearnedOutput LearnedModel::outputs(const Image2<float>& grey) const {
+  const int multiple = network_.multiple();
+  const auto missing = [&](int side) { return (multiple - side % multiple) % multiple; };
+  const auto [low, high] = card_.input_range;
+  Image2<float> image(grey.rows() + missing(grey.rows()), grey.columns() + missing(grey.columns()));
+  cv::Mat padded(image.rows(), image.columns(), CV_32F, image.pixels().data());
+  cv::copyMakeBorder(mat_view(grey), padded, 0, missing(grey.rows()), 0, missing(grey.columns()),
                      cv::BORDER_REFLECT_101);
-  image = cv::min(cv::max(image, 0.0), 255.0);
-  image.convertTo(image, CV_32F, (high - low) / 255.0, low);
-  const std::array<int, 4> shape{1, 1, image.rows, image.cols};
+  const auto scale = static_cast<float>((high - low) / 255.0), offset = static_cast<float>(low);
+  for (float& pixel : image.pixels()) pixel = std::clamp(pixel, 0.0F, 255.0F) * scale + offset;
   try {
-    cv::dnn::Net net = networks_->take();
-    net.setInput(image.reshape(1, 4, shape.data()));
-    const cv::Mat output = net.forward();
-    if (output.type() != CV_32F || output.total() != image.total() || !output.isContinuous()) {
-      throw DataError(fmt::format("{}: gives an output of another size than its input", networks_->where));
+    std::vector<Image2<float>> heads = network_.run(image);
+    if (image.size() != grey.size()) {
+      for (Image2<float>& head : heads) head = cut(head, grey.rows(), grey.columns());
     }
-    const cv::Mat plane(image.rows, image.cols, CV_32F, const_cast<float*>(output.ptr<float>()));
-    Image2<float> result = from_mat(plane(cv::Rect(0, 0, grey.columns(), grey.rows())));
-    networks_->give_back(std::move(net));
-    return result;
-  } catch (const cv::Exception& e) {
-    throw DataError(fmt::format("{}: does not run on an image of {} x {} ({})", networks_->where, grey.rows(),
-                                grey.columns(), e.err));
+    LearnedOutput output{std::move(heads.front()), {}};
+    if (cleans()) output.clean = std::move(heads.back());
+    return output;
+  } catch (const DataError& e) {
+    throw DataError(fmt::format("{}: {}", where_, e.what()));
   }
 }
 

@@ -69,8 +69,8 @@ class Fields {
   std::string_view rest_;
 };
 
-/// Calls visit(field) for every field. A field that visit does not know (it returns false) is refused: the library that
-/// runs the model might know it.
+/// Calls visit(field) for every field. A field that visit does not know (it returns false) is refused: it might
+/// change what the network computes.
 template <typename Visit>
 void for_fields(std::string_view message, const char* what, const Visit& visit) {
   Fields fields(message);
@@ -84,15 +84,31 @@ void add_integers(const Field& field, std::vector<std::int64_t>& to) {
   fail("its integers are packed");
 }
 
+float float_of(const Field& field) {
+  float number = 0;
+  if (field.bytes.size() != sizeof(float)) fail("a number has another type than its field");
+  std::memcpy(&number, field.bytes.data(), sizeof(float));
+  if (!std::isfinite(number)) fail("an attribute is not finite");
+  return number;
+}
+
 void read_attribute(std::string_view message, OnnxNode& node) {
   std::string name;
   std::vector<std::int64_t> integers;
+  std::optional<float> number;
   for_fields(message, "an attribute", [&](const Field& f) {
     if (f.number == 1) name = f.bytes;
+    if (f.number == 2) number = float_of(f);
     if (f.number == 3 || f.number == 8) add_integers(f, integers);
     return f.number == 1 || f.number == 2 || f.number == 3 || f.number == 8 || f.number == 20;
   });
-  if (!node.integers.emplace(name, std::move(integers)).second) fail(fmt::format("attribute {} is there twice", name));
+  const bool twice = node.integers.contains(name) || node.floats.contains(name);
+  if (twice || (number && !integers.empty())) fail(fmt::format("attribute {} is there twice", name));
+  if (number) {
+    node.floats.emplace(name, *number);
+  } else {
+    node.integers.emplace(name, std::move(integers));
+  }
 }
 
 OnnxNode read_node(std::string_view message) {
@@ -127,12 +143,12 @@ void read_tensor(std::string_view message, OnnxFile& file) {
     count *= static_cast<std::uint64_t>(side);
   }
   if (count * sizeof(float) != raw.size()) fail(fmt::format("tensor {} has another length than its shape", name));
-  for (std::size_t i = 0; i < raw.size(); i += sizeof(float)) {
-    float weight = 0;
-    std::memcpy(&weight, raw.data() + i, sizeof(float));
+  OnnxTensor tensor{std::move(shape), std::vector<float>(count)};
+  std::memcpy(tensor.values.data(), raw.data(), raw.size());
+  for (const float weight : tensor.values) {
     if (!std::isfinite(weight)) fail(fmt::format("tensor {} holds {}; weights must be finite", name, weight));
   }
-  if (!file.tensors.emplace(name, std::move(shape)).second) fail(fmt::format("tensor {} is there twice", name));
+  if (!file.tensors.emplace(name, std::move(tensor)).second) fail(fmt::format("tensor {} is there twice", name));
 }
 
 /// Name and sides of an input or output: ValueInfoProto { name, TypeProto { Tensor { type, shape { dim } } } }.

@@ -6,19 +6,25 @@
 #include <string_view>
 #include <vector>
 
-/// What an ONNX file says, before any library acts on it. Source: onnx.proto3 of ONNX 1.6 (opset 11).
+/// What an ONNX file says. Source: onnx.proto3 of ONNX 1.6 (opset 11).
 namespace ensonify {
 
 struct OnnxNode {
   std::string operation;
   std::vector<std::string> inputs, outputs;
   std::map<std::string, std::vector<std::int64_t>> integers;  ///< attributes of one or several integers
+  std::map<std::string, float> floats;                        ///< attributes of one number
+};
+
+struct OnnxTensor {
+  std::vector<std::int64_t> shape;
+  std::vector<float> values;  ///< all finite; the last axis varies fastest
 };
 
 struct OnnxFile {
   std::string input, output;
-  std::vector<std::int64_t> input_sides;                     ///< -1 where the file leaves a side open
-  std::map<std::string, std::vector<std::int64_t>> tensors;  ///< shapes of the weights, all finite floats
+  std::vector<std::int64_t> input_sides;      ///< -1 where the file leaves a side open
+  std::map<std::string, OnnxTensor> tensors;  ///< the weights
   std::vector<OnnxNode> nodes;
 };
 

@@ -13,6 +13,10 @@ using Integers = std::vector<std::int64_t>;
 
 constexpr std::size_t most_nodes = 1000;
 constexpr int most_halvings = 10;
+constexpr std::int64_t most_channels = 4096;
+constexpr int most_activations = 4;
+/// With channels rounded up to blocks of 16, as the engine stores them.
+constexpr std::int64_t most_weights = std::int64_t{1} << 28;
 
 [[noreturn]] void fail(const std::string& what) {
   throw DataError(fmt::format("no network that ensonify can run: {}", what));
@@ -22,11 +26,12 @@ constexpr int most_halvings = 10;
 struct Flow {
   std::int64_t channels = 1;
   int halvings = 0;
+  int activations = 0;  ///< since the last convolution
 };
 
-class Network {
+class Rules {
  public:
-  explicit Network(const OnnxFile& file) : file_(file) {
+  explicit Rules(const OnnxFile& file) : file_(file) {
     const Integers& sides = file.input_sides;
     const bool images =
         sides.size() == 4 && sides[0] == 1 && sides[1] == 1 &&
@@ -38,27 +43,31 @@ class Network {
       fail(fmt::format("it must have 1 to {} nodes", most_nodes));
     for (const OnnxNode& node : file.nodes) add(node);
     const Flow end = flow(file.output);
-    if (end.channels != 1 || end.halvings != 0) fail("its output must have one channel and the size of the input");
+    if (end.channels > 2 || end.halvings != 0) fail("its output must have 1 or 2 channels and the size of the input");
+    heads_ = static_cast<int>(end.channels);
     if (file.nodes.back().operation != "Sigmoid" || file.nodes.back().outputs.front() != file.output) {
-      fail("it must end in a Sigmoid, so that its output is a probability");
+      fail("it must end in a Sigmoid, so that its output lies in 0..1");
     }
   }
 
-  int halvings() const { return halvings_; }
+  OnnxNeeds needs() const { return {1 << halvings_, heads_}; }
 
  private:
   void add(const OnnxNode& node) {
     if (node.outputs.size() != 1 || node.inputs.empty()) fail(node.operation + " must have inputs and one output");
     const Flow result = passed(node);
     if (result.halvings < 0 || result.halvings > most_halvings) fail("its scales do not fit together");
+    if (result.channels > most_channels) fail(fmt::format("it has more than {} channels", most_channels));
+    if (result.activations > most_activations) fail("it has too many activations in a row");
     halvings_ = std::max(halvings_, result.halvings);
     if (file_.tensors.contains(node.outputs.front()) || !flows_.emplace(node.outputs.front(), result).second) {
       fail(fmt::format("'{}' is computed twice", node.outputs.front()));
     }
   }
 
-  Flow passed(const OnnxNode& node) const {
+  Flow passed(const OnnxNode& node) {
     const std::string& operation = node.operation;
+    if (operation != "LeakyRelu" && !node.floats.empty()) fail(operation + " must have no attribute of a real number");
     if (operation == "Conv") return convolved(node, 1, 0, 1);
     if (operation == "ConvTranspose") return convolved(node, 0, 1, -1);
     if (operation == "Concat") {
@@ -68,23 +77,23 @@ class Network {
         const Flow other = flow(node.inputs[i]);
         if (other.halvings != joined.halvings) fail("Concat joins images of different sizes");
         joined.channels += other.channels;
+        joined.activations = std::max(joined.activations, other.activations);
+        if (joined.channels > most_channels) return joined;
       }
       return joined;
     }
-    const bool leaky = operation == "LeakyRelu" && (node.integers.empty() || only_alpha(node));
-    if (leaky || ((operation == "Relu" || operation == "Sigmoid") && node.integers.empty())) {
+    const bool leaky = operation == "LeakyRelu" && node.floats.size() == node.floats.count("alpha");
+    if ((leaky || operation == "Relu" || operation == "Sigmoid") && node.integers.empty()) {
       if (node.inputs.size() != 1) fail(operation + " must have one input");
-      return flow(node.inputs.front());
+      Flow activated = flow(node.inputs.front());
+      ++activated.activations;
+      return activated;
     }
     fail(fmt::format("a node {} is not supported", operation.substr(0, 40)));
   }
 
-  static bool only_alpha(const OnnxNode& node) {
-    return node.integers == std::map<std::string, Integers>{{"alpha", {}}};
-  }
-
   /// `in`, `out`: axes of the weights. `halves`: what a kernel of 4 does to the number of halvings.
-  Flow convolved(const OnnxNode& node, std::size_t in, std::size_t out, int halves) const {
+  Flow convolved(const OnnxNode& node, std::size_t in, std::size_t out, int halves) {
     const Flow before = flow(node.inputs.front());
     if (node.inputs.size() < 2 || node.inputs.size() > 3)
       fail(node.operation + " must have weights, and may have a bias");
@@ -106,6 +115,9 @@ class Network {
       fail(fmt::format("{} of '{}': stride, padding, dilation or group is not supported", node.operation,
                        node.inputs[1]));
     }
+    const auto rounded = [](std::int64_t channels) { return (channels + 15) / 16 * 16; };
+    weights_ += rounded(shape[0]) * rounded(shape[1]) * kernel * kernel;
+    if (weights_ > most_weights) fail(fmt::format("it has more than {} weights", most_weights));
     return {shape[out], before.halvings + (keeps ? 0 : halves)};
   }
 
@@ -117,16 +129,18 @@ class Network {
   const Integers& weights(const std::string& name) const {
     const auto found = file_.tensors.find(name);
     if (found == file_.tensors.end()) fail(fmt::format("weights '{}' are missing", name));
-    return found->second;
+    return found->second.shape;
   }
 
   const OnnxFile& file_;
   std::map<std::string, Flow> flows_;
   int halvings_ = 0;
+  int heads_ = 1;
+  std::int64_t weights_ = 0;
 };
 
 }  // namespace
 
-OnnxNeeds check_network(const OnnxFile& file) { return {1 << Network(file).halvings()}; }
+OnnxNeeds check_network(const OnnxFile& file) { return Rules(file).needs(); }
 
 }  // namespace ensonify

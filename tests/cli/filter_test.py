@@ -34,7 +34,7 @@ class Images(ProgramTest):
     def test_the_list_names_every_method_of_the_design(self):
         listed = self.succeed("filter", "--list").stdout.split()
         for method in ("lee lee_enhanced kuan frost gamma_map srad anisodiff wavelet wiener median bilateral nlm cfar threshold "
-                       "unet pix2pix unsharp equalize mask").split():
+                       "unet unet_clean pix2pix unsharp equalize mask").split():
             self.assertIn(method, listed)
 
     def test_an_array_keeps_its_fractions_and_an_image_is_rounded(self):
@@ -111,6 +111,8 @@ class Images(ProgramTest):
                 (["lee", "in.npy", "o.tiff"], [".png, .exr or .npy"]),
                 (["lee", "in.npy", "o.npy", "--preset", "tunned"], ["tuned"]),
                 (["unet", "in.npy", "o.npy"], ["model must be given", "docs/learned_filter.md"]),
+                (["unet_clean", "in.npy", "o.npy"], ["model must be given", "docs/learned_filter.md"]),
+                (["unet_clean", "in.npy", "o.npy", "--set", "domain=log"], ["unet_clean has no parameter 'domain'"]),
                 (["pix2pix", "in.npy", "o.npy", "--set", "model=no.onnx"], ["no.onnx: no such file", "docs/learned_filter.md"]),
                 (["lee", "in.npy"], ["METHOD, INPUT and OUTPUT"])):
             self.refuse(2, fragments, "filter", *words)

@@ -6,15 +6,18 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <opencv2/core.hpp>
+#include <thread>
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/core/parallel.hpp"
 #include "ensonify/core/random.hpp"
+#include "ensonify/filters/activation.hpp"
 #include "ensonify/filters/filter_chain.hpp"
 #include "ensonify/filters/filter_registry.hpp"
 #include "ensonify/filters/learned_model.hpp"
+#include "ensonify/filters/network.hpp"
 #include "ensonify/output/grey_file.hpp"
+#include "support/network_maker.hpp"
 #include "support/test_folders.hpp"
 
 /// Networks of tests/filters/learned/make_goldens.py.
@@ -48,7 +51,8 @@ class Learned : public testing::Test {
     folder = fs::temp_directory_path() /
              (std::string("ensonify_learned_") + testing::UnitTest::GetInstance()->current_test_info()->name());
     fs::create_directories(folder);
-    for (const char* file : {"unet.onnx", "unet.json", "pix2pix.onnx", "pix2pix.json"}) {
+    for (const char* file : {"unet.onnx", "unet.json", "pix2pix.onnx", "pix2pix.json", "two_heads.onnx",
+                             "two_heads.json", "odd_kernels.onnx", "odd_kernels.json"}) {
       fs::copy_file(goldens() / file, folder / file, fs::copy_options::overwrite_existing);
     }
   }
@@ -77,22 +81,36 @@ Image2<float> noise(int rows, int columns, std::uint64_t seed = 1) {
   return image;
 }
 
-TEST_F(Learned, ProbabilitiesAreTorchs) {
-  const Image2<float> image = read_grey(goldens() / "image.npy").grey;
-  for (const char* network : {"unet", "pix2pix"}) {
-    const LearnedModel model(folder / (std::string(network) + ".onnx"));
-    const Image2<float> ours = model.probability(image);
-    const Image2<float> theirs = read_grey(goldens() / (std::string(network) + "_probability.npy")).grey;
-    ASSERT_EQ(ours.size(), theirs.size());
-    float largest = 0, low = 1, high = 0;
-    for (std::size_t i = 0; i < ours.size(); ++i) {
-      largest = std::max(largest, std::abs(ours.pixels()[i] - theirs.pixels()[i]));
-      low = std::min(low, theirs.pixels()[i]);
-      high = std::max(high, theirs.pixels()[i]);
-    }
-    EXPECT_LT(largest, 1e-4F) << network;
-    EXPECT_GT(high - low, 0.3F) << network << ": too even an output shows little";
+void expect_torchs(const Image2<float>& ours, const std::string& golden) {
+  const Image2<float> theirs = read_grey(goldens() / (golden + ".npy")).grey;
+  ASSERT_EQ(ours.size(), theirs.size());
+  float largest = 0, low = 1, high = 0;
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    largest = std::max(largest, std::abs(ours.pixels()[i] - theirs.pixels()[i]));
+    low = std::min(low, theirs.pixels()[i]);
+    high = std::max(high, theirs.pixels()[i]);
   }
+  EXPECT_LT(largest, 1e-4F) << golden;
+  EXPECT_GT(high - low, 0.3F) << golden << ": too even an output shows little";
+}
+
+TEST_F(Learned, ProbabilitiesAndCleanImagesAreTorchs) {
+  const Image2<float> image = read_grey(goldens() / "image.npy").grey;
+  for (const std::string network : {"unet", "pix2pix", "two_heads", "odd_kernels"}) {
+    const LearnedModel model(folder / (network + ".onnx"));
+    const LearnedOutput output = model.outputs(image);
+    expect_torchs(output.probability, network + "_probability");
+    ASSERT_EQ(output.clean.has_value(), network == "two_heads" || network == "odd_kernels");
+    ASSERT_EQ(model.cleans(), output.clean.has_value());
+    if (output.clean) expect_torchs(*output.clean, network + "_clean");
+  }
+}
+
+TEST_F(Learned, TheCleanImageIsInGreyLevels) {
+  const GreyImage image = read_grey(goldens() / "image.npy");
+  const Image2<float> share = LearnedModel(folder / "two_heads.onnx").outputs(image.grey).clean.value();
+  const Image2<float> grey = apply({"test", {step("unet_clean", "two_heads.onnx")}}, image).grey;
+  for (std::size_t i = 0; i < grey.size(); ++i) EXPECT_EQ(grey.pixels()[i], 255.0F * share.pixels()[i]);
 }
 
 TEST_F(Learned, MasksAreWhereTheProbabilityReachesTheThreshold) {
@@ -132,7 +150,6 @@ TEST_F(Learned, TheBitsDoNotDependOnTheNumberOfThreads) {
   for (int i = 0; i < count; ++i) images.push_back(noise(150 + 31 * (i % 3), 130 + 17 * (i % 4), i));
   for (const std::size_t threads : {1, 2, 8}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
-    cv::setNumThreads(static_cast<int>(threads));  // into so many parts OpenCV cuts its work
     const LearnedModel model(folder / "pix2pix.onnx");
     std::vector<Image2<float>> results(count);
     parallel_for(count, [&](int i) { results[i] = model.probability(images[i]); });
@@ -142,7 +159,72 @@ TEST_F(Learned, TheBitsDoNotDependOnTheNumberOfThreads) {
       EXPECT_EQ(model.probability(images[i]), expected[i]) << "alone, " << threads << " threads";
     }
   }
-  cv::setNumThreads(-1);
+}
+
+/// Wide networks, whose layers are cut into many tasks, and images of several sizes in turn.
+TEST_F(Learned, WideNetworksGiveTheSameBitsTooWhateverCameBefore) {
+  const OnnxFile file = random_unet(16, 6, 2);
+  const std::vector<Image2<float>> images{noise(64, 64), noise(704, 256), noise(128, 192), noise(256, 64),
+                                          noise(64, 64)};
+  std::vector<std::vector<Image2<float>>> expected;
+  for (const Image2<float>& image : images) expected.push_back(Network(file).run(image));
+  EXPECT_EQ(expected.front(), expected.back());
+  for (const std::size_t threads : {1, 2, 8}) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    const Network network(file);
+    for (std::size_t i = 0; i < images.size(); ++i) EXPECT_EQ(network.run(images[i]), expected[i]) << threads;
+    parallel_for(20, [&](int i) { EXPECT_EQ(network.run(images[i % 5]), expected[i % 5]) << threads; });
+    std::vector<std::thread> others;  // of no pool
+    for (int i = 0; i < 4; ++i) others.emplace_back([&, i] { EXPECT_EQ(network.run(images[i]), expected[i]); });
+    for (std::thread& other : others) other.join();
+  }
+}
+
+/// What is planned is what the nodes say: numbers by hand.
+TEST_F(Learned, OneConvolutionAndItsTransposeAreSumsOfProducts) {
+  NetworkMaker maker;
+  const OnnxFile down_up = maker.end(maker.transpose(maker.activate("LeakyRelu", maker.conv("image", 1, 2, 4)), 2, 1));
+  const Image2<float> image = noise(6, 8);
+  Image2<float> scaled = image;
+  for (float& x : scaled.pixels()) x /= 255.0F;
+  const auto& tensors = down_up.tensors;
+  const auto at = [](const OnnxTensor& t, int a, int b, int row, int column) {
+    return t.values[((a * t.shape[1] + b) * t.shape[2] + row) * t.shape[3] + column];
+  };
+  Image2<float> expected(6, 8, tensors.at("t3").values[0]);
+  for (int c = 0; c < 2; ++c) {
+    for (int y = 0; y < 3; ++y) {
+      for (int x = 0; x < 4; ++x) {
+        float sum = tensors.at("t1").values[c];
+        const auto cells = [&](const auto& visit) {
+          for (int k = 0; k < 16; ++k) {
+            const int row = 2 * y - 1 + k / 4, column = 2 * x - 1 + k % 4;
+            if (row >= 0 && row < 6 && column >= 0 && column < 8) visit(row, column, k / 4, k % 4);
+          }
+        };
+        cells(
+            [&](int i, int j, int row, int column) { sum += scaled(i, j) * at(tensors.at("t0"), c, 0, row, column); });
+        sum = sum > 0 ? sum : 0.2F * sum;
+        cells([&](int i, int j, int row, int column) {
+          expected(i, j) += sum * at(tensors.at("t2"), c, 0, row, column);
+        });
+      }
+    }
+  }
+  const Image2<float> ours = Network(down_up).run(scaled).front();
+  for (std::size_t i = 0; i < ours.size(); ++i) {
+    EXPECT_NEAR(ours.pixels()[i], 1 / (1 + std::exp(-expected.pixels()[i])), 1e-5) << i;
+  }
+}
+
+TEST(Activations, SigmoidIsRightAndHoldsItsEnds) {
+  std::vector<float> numbers{-INFINITY, -1e30F, -100, 0, 100, 1e30F, INFINITY};
+  for (int i = -2000; i <= 2000; ++i) numbers.push_back(0.01F * static_cast<float>(i));
+  std::vector<float> results = numbers;
+  activate({Sigmoid{}}, results);
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    EXPECT_NEAR(results[i], 1 / (1 + std::exp(-static_cast<double>(numbers[i]))), 3e-7) << numbers[i];
+  }
 }
 
 TEST_F(Learned, AModelThatIsCutShortIsAnError) {
@@ -182,6 +264,8 @@ TEST_F(Learned, FaultsNameTheFileAndTheCure) {
   EXPECT_THAT(method_fault(make_filter("unet")),
               AllOf(HasSubstr("unet: model must be given"), HasSubstr("docs/learned_filter.md")));
   EXPECT_THAT(method_fault(step("unet", "absent.onnx")), AllOf(HasSubstr("absent.onnx"), HasSubstr("no such file")));
+  EXPECT_THAT(method_fault(step("unet_clean", "unet.onnx")),
+              AllOf(HasSubstr("unet_clean"), HasSubstr("gives no clean image")));
   EXPECT_THAT(method_fault(step("unet", "pix2pix.onnx")), HasSubstr("is a pix2pix network"));
   EXPECT_THAT(fault_of<ConfigError>([] {
                 FilterStep unet = make_filter("unet");

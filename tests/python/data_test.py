@@ -4,6 +4,7 @@
 import hashlib
 import itertools
 import os
+import pathlib
 import pickle
 import subprocess
 import sys
@@ -165,6 +166,15 @@ class Forks(ModuleTest):
             self.assertEqual(in_child(lambda: (digest(simulator.ping(POSE).raw), digest(recipe.make_frame(0).raw))), str(ours))
         self.assertEqual(in_child(lambda: in_child(lambda: digest(simulator.ping(POSE).raw))), ours[0])
         self.assertEqual(digest(simulator.ping(POSE).raw), ours[0])
+
+    def test_a_child_runs_the_network_that_its_parent_has_run(self):
+        model = pathlib.Path(__file__).parents[1] / "filters/learned/pix2pix.onnx"
+        mask = ensonify.Filter("pix2pix", model=str(model))
+        image = numpy.random.default_rng(1).uniform(0, 255, (500, 300)).astype(numpy.float32)
+        ours = digest(mask(image))
+        self.assertEqual(in_child(lambda: digest(mask(image))), ours)
+        self.assertEqual(in_child(lambda: in_child(lambda: digest(mask(image)))), ours)
+        self.assertEqual(digest(mask(image)), ours)
 
     def test_the_pool_ends_before_a_fork_and_starts_again(self):
         ensonify.set_threads(2)

@@ -65,7 +65,7 @@ class Writer {
     for (const ContactRow& row : sheet.rows) {
       std::size_t side_by_side = 1;
       for (const ContactTile& tile : row.tiles) side_by_side = std::max(side_by_side, tile.pictures.size());
-      html_ += fmt::format("<h4>{}</h4>\n<div class=\"tiles\" style=\"grid-template-columns: ", escaped(row.label));
+      html_ += fmt::format("<p class=\"label\">{}</p>\n<div class=\"tiles\" style=\"grid-template-columns: ", escaped(row.label));
       html_ += fmt::format("repeat(auto-fill, minmax(min(100%, {}rem), 1fr))\">\n", 5 * side_by_side);
       for (const ContactTile& tile : row.tiles) put(tile, row.label);
       html_ += "</div>\n";

@@ -45,7 +45,7 @@ figure > img { display: block; max-width: 100%; height: auto; padding: 4px; back
 figcaption { margin: .75rem 0; max-width: 72ch; font-size: .9rem; color: var(--quiet); }
 figcaption b { color: var(--ink); }
 .sheet { font-size: .8rem; color: var(--quiet); }
-.sheet h4 { margin: 1rem 0 .35rem; font-size: .85rem; font-weight: 600; color: var(--ink); }
+.sheet .label { margin: 1rem 0 .35rem; font-size: .85rem; font-weight: 600; color: var(--ink); }
 .tiles { display: grid; gap: .6rem .75rem; }
 .tile { min-width: 0; }
 .tile div { display: flex; gap: 2px; border: 1px solid var(--rule); background: var(--rule); }
@@ -71,7 +71,7 @@ details caption { display: none; }
   @page { margin: 15mm; }
   body { max-width: none; padding: 0; font-size: 10pt; }
   nav, .scroll::-webkit-scrollbar { display: none; }
-  h2, h3, h4, summary { break-after: avoid; }
+  h2, h3, .label, summary { break-after: avoid; }
   figure > svg, .tile, tr { break-inside: avoid; }
   figcaption { break-before: avoid; }
   .figures { grid-template-columns: 1fr 1fr; gap: 1.5rem; }

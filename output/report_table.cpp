@@ -25,6 +25,10 @@ std::string fixed(double value, int digits) {
   return text.find_first_of("123456789") == text.npos && text.front() == '-' ? text.substr(1) : text;  // no "-0.00"
 }
 
+std::string significant(double value, int digits) {
+  return std::isfinite(value) ? fmt::format("{:.{}g}", value, digits) : "–";
+}
+
 std::string percent(double share, int digits) { return fixed(100 * share, digits); }
 
 std::string html_table(const ReportTable& table) {

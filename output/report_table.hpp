@@ -17,6 +17,9 @@ struct ReportTable {
 /// A number with so many digits after the point; "–" where it is none.
 std::string fixed(double value, int digits);
 
+/// A number with so many significant digits; "–" where it is none.
+std::string significant(double value, int digits);
+
 /// A share as a percentage, without its sign: "12.3".
 std::string percent(double share, int digits = 1);
 

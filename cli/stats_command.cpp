@@ -11,6 +11,7 @@
 #include "ensonify/cli/progress.hpp"
 #include "ensonify/cli/report_files.hpp"
 #include "ensonify/generators/even_tiles.hpp"
+#include "ensonify/generators/report_source.hpp"
 #include "ensonify/generators/stats_json.hpp"
 #include "ensonify/generators/stats_page.hpp"
 #include "ensonify/generators/stats_plots.hpp"

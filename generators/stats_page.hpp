@@ -1,7 +1,6 @@
 #pragma once
 
 #include "ensonify/generators/dataset_stats.hpp"
-#include "ensonify/generators/report_source.hpp"
 #include "ensonify/output/report_page.hpp"
 
 namespace ensonify {

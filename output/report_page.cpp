@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "ensonify/core/error.hpp"
@@ -13,6 +14,19 @@
 
 namespace ensonify {
 namespace {
+
+/// Least width of a row's tiles: pictures are 5.2 rem high (pairs of square ones then stand two by two on a phone), and
+/// captions have their room.
+double width_rem(const ContactRow& row) {
+  double widest = 0;
+  for (const ContactTile& tile : row.tiles) {
+    double aspect = 0;
+    for (const auto& picture : tile.pictures)
+      aspect += picture.columns() / static_cast<double>(std::max(1, picture.rows()));
+    widest = std::max(widest, aspect);
+  }
+  return std::clamp(std::round(52 * widest) / 10, 6.5, 20.0);
+}
 
 /// Writes the body, counting figures and what keeps plots from being drawn.
 class Writer {
@@ -63,10 +77,9 @@ class Writer {
   void put(const ContactSheet& sheet, const ReportFigure& figure) {
     html_ += fmt::format("<div class=\"sheet\" role=\"group\" aria-label=\"{}\">\n", escaped(figure.alt));
     for (const ContactRow& row : sheet.rows) {
-      std::size_t side_by_side = 1;
-      for (const ContactTile& tile : row.tiles) side_by_side = std::max(side_by_side, tile.pictures.size());
-      html_ += fmt::format("<p class=\"label\">{}</p>\n<div class=\"tiles\" style=\"grid-template-columns: ", escaped(row.label));
-      html_ += fmt::format("repeat(auto-fill, minmax(min(100%, {}rem), 1fr))\">\n", 5 * side_by_side);
+      html_ += fmt::format("<p class=\"label\">{}</p>\n<div class=\"tiles\" style=\"grid-template-columns: ",
+                           escaped(row.label));
+      html_ += fmt::format("repeat(auto-fit, minmax(min(100%, {:g}rem), 1fr))\">\n", width_rem(row));
       for (const ContactTile& tile : row.tiles) put(tile, row.label);
       html_ += "</div>\n";
     }

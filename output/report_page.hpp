@@ -31,14 +31,20 @@ struct ReportSection {
   std::vector<ReportSection> parts = {};  ///< below the figures; their own parts are not shown
 };
 
+/// Where numbers come from.
+struct ReportSource {
+  std::string line;                                        ///< for captions: name, seed, start of the root hash
+  std::vector<std::pair<std::string, std::string>> facts;  ///< name and value, for the head of a page
+};
+
 struct ReportPage {
   std::string title, lead;
-  std::vector<std::pair<std::string, std::string>> facts;  ///< where the numbers come from: name and value
+  std::vector<std::pair<std::string, std::string>> facts;  ///< as of ReportSource
   std::vector<ReportSection> sections;
 };
 
 /// One plot as a figure shows it: small, with letters that stay legible on a phone, without a title of its own.
-PlotSheet figure_of(Plot plot, int width = 480, int height = 330);
+PlotSheet figure_of(Plot plot, int width = 440, int height = 310);
 
 /// The page as one HTML file that needs nothing else: style, plots (SVG) and pictures (PNG) within, no scripts. All
 /// texts are escaped. The same bytes for the same page. Where gnuplot is missing, plots are left out and the page says

@@ -39,7 +39,7 @@ dd { margin: 0; min-width: 0; overflow-wrap: anywhere; }
 .figures { display: grid; grid-template-columns: repeat(auto-fill, minmax(min(100%, 28rem), 1fr)); gap: 2.5rem 2rem; margin: 1.5rem 0; }
 figure { margin: 0; min-width: 0; }
 figure.wide { grid-column: 1 / -1; }
-figure > svg { display: block; width: 100%; max-width: 44rem; height: auto; }
+figure > svg { display: block; width: 100%; max-width: 34rem; height: auto; }
 figure > svg text { font-family: system-ui, -apple-system, "Segoe UI", Roboto, "Noto Sans", "Liberation Sans", sans-serif; }
 figure > img { display: block; max-width: 100%; height: auto; padding: 4px; background: #fff; border: 1px solid var(--rule); }
 figcaption { margin: .75rem 0; max-width: 72ch; font-size: .9rem; color: var(--quiet); }
@@ -47,25 +47,26 @@ figcaption b { color: var(--ink); }
 .sheet { font-size: .8rem; color: var(--quiet); }
 .sheet .label { margin: 1rem 0 .35rem; font-size: .85rem; font-weight: 600; color: var(--ink); }
 .tiles { display: grid; gap: .6rem .75rem; }
-.tile { min-width: 0; }
+.tile { min-width: 0; max-width: 20rem; }
 .tile div { display: flex; gap: 2px; border: 1px solid var(--rule); background: var(--rule); }
 .tile img { flex: 1 1 0; display: block; min-width: 0; width: 100%; height: auto; }
 .tile span { display: block; font-variant-numeric: tabular-nums; }
-.scroll { max-width: 100%; max-height: 32rem; margin: .5rem 0 1.25rem; overflow: auto; border: 1px solid var(--rule); border-radius: 4px; }
+.scroll { max-width: 100%; margin: .5rem 0 1.25rem; overflow: auto; border: 1px solid var(--rule); border-radius: 4px; }
 table { width: 100%; border-collapse: collapse; font-size: .85rem; font-variant-numeric: tabular-nums; }
-caption { position: sticky; left: 0; padding: .5rem .7rem; text-align: left; color: var(--quiet); }
+caption { padding: .5rem .7rem; text-align: left; color: var(--quiet); }
+caption span { position: sticky; left: .7rem; display: inline-block; max-width: min(60ch, calc(100vw - 4rem)); }
 th, td { padding: .3rem .7rem; border-top: 1px solid var(--rule); text-align: right; white-space: nowrap; font-weight: 400; }
-thead th { position: sticky; top: 0; background: var(--soft); font-weight: 600; }
+thead th { position: sticky; top: 0; z-index: 1; background: var(--soft); font-weight: 600; white-space: normal; vertical-align: bottom; }
+tbody th:first-child { position: sticky; left: 0; background: var(--paper); }
 thead th.head, tbody th { text-align: left; }
 details { margin: .5rem 0 1rem; }
 summary { cursor: pointer; font-size: .9rem; color: var(--link); }
 details caption { display: none; }
+details .scroll { max-height: 32rem; }
 
 @media (max-width: 40rem) {
   body { padding: 1.25rem 1rem 3rem; }
   h1 { font-size: 1.5rem; }
-  dl { grid-template-columns: 1fr; gap: 0; }
-  dd { margin-bottom: .5rem; }
 }
 @media print {
   @page { margin: 15mm; }
@@ -75,8 +76,8 @@ details caption { display: none; }
   figure > svg, .tile, tr { break-inside: avoid; }
   figcaption { break-before: avoid; }
   .figures { grid-template-columns: 1fr 1fr; gap: 1.5rem; }
-  .scroll { max-height: none; overflow: visible; border: 0; }
-  thead th { position: static; }
+  .scroll, details .scroll { max-height: none; overflow: visible; border: 0; }
+  thead th, tbody th:first-child { position: static; }
   table { font-size: 7.5pt; }
   th, td { padding: .15rem .35rem; white-space: normal; }
   a { color: inherit; text-decoration: none; }

@@ -35,7 +35,7 @@ std::string html_table(const ReportTable& table) {
   const std::string caption = escaped(table.caption);
   std::string html =
       fmt::format("<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n<table>\n", caption);
-  html += fmt::format("<caption>{}</caption>\n<thead><tr>", caption);
+  html += fmt::format("<caption><span>{}</span></caption>\n<thead><tr>", caption);
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
     const bool head = c < static_cast<std::size_t>(table.heads);
     html += fmt::format("<th scope=\"col\"{}>{}</th>", head ? " class=\"head\"" : "", escaped(table.columns[c]));
@@ -47,7 +47,7 @@ std::string html_table(const ReportTable& table) {
     html += "</tr>\n";
   }
   html += "</tbody>\n</table>\n</div>\n";
-  if (table.rows.size() <= most_open_rows) return html;
+  if (table.open || table.rows.size() <= most_open_rows) return html;
   return fmt::format("<details>\n<summary>{} ({} rows)</summary>\n{}</details>\n", caption, table.rows.size(), html);
 }
 

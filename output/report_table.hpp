@@ -12,6 +12,7 @@ struct ReportTable {
   std::vector<std::string> columns;
   std::vector<std::vector<std::string>> rows;
   int heads = 1;
+  bool open = false;  ///< not folded, however long
 };
 
 /// A number with so many digits after the point; "–" where it is none.

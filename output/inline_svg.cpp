@@ -122,6 +122,7 @@ void find_used(const SvgNode& node, Names& used) {
 void drop_unused(SvgNode& node, const Names& used) {
   std::erase_if(node.attributes, [&](const auto& a) { return a.first == "id" && !used.contains(a.second); });
   for (SvgNode& child : node.children) drop_unused(child, used);
+  std::erase_if(node.children, [](const SvgNode& child) { return child.name == "defs" && child.children.empty(); });
   if (node.name != "defs") return;
   std::erase_if(node.children, [](const SvgNode& child) { return child.attribute("id").empty(); });
 }
@@ -144,7 +145,6 @@ std::string inline_svg(std::string_view svg, const std::string& prefix, const st
     find_used(root, used);
     drop_unused(root, used);
   }
-  std::erase_if(root.children, [](const SvgNode& child) { return child.name == "defs" && child.children.empty(); });
   root.attributes.emplace_back("role", "img");
   root.attributes.emplace_back("aria-label", escaped(alt));
   std::string out;

@@ -130,7 +130,7 @@ SvgNode read_svg(std::string_view text) {
 
 void write_svg(const SvgNode& node, std::string& out) {
   if (node.name.empty()) {
-    out += node.text;
+    for (const char c : node.text) out += c == '>' ? "&gt;" : std::string(1, c);
     return;
   }
   out += "<" + node.name;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 namespace ensonify {
 namespace {
@@ -40,11 +41,15 @@ ReportTable score_table(const FilterReport& report, const std::string& scene) {
                     {},
                     2,
                     scene == "all"};
-  for (const ShownScore& score : shown_scores) table.columns.emplace_back(score.unit);
+  std::vector<ShownScore> scores(shown_scores.begin(), shown_scores.end());
+  std::erase_if(scores, [&](const ShownScore& s) {  // ghosts, where the dataset has no multipath
+    return std::ranges::none_of(report.rows, [&](const auto& row) { return std::isfinite((row.*s.estimate).value); });
+  });
+  for (const ShownScore& score : scores) table.columns.emplace_back(score.unit);
   for (const FilterScores& row : report.rows) {
     if (row.scene != scene) continue;
     std::vector<std::string> cells{row.filter, row.preset, std::to_string(row.t.best)};
-    for (const ShownScore& score : shown_scores) cells.push_back(fixed((row.*score.estimate).value, score.digits));
+    for (const ShownScore& score : scores) cells.push_back(fixed((row.*score.estimate).value, score.digits));
     table.rows.push_back(std::move(cells));
   }
   return table;

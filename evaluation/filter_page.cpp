@@ -95,6 +95,7 @@ ReportPage filter_page(const FilterReport& report, ContactSheet frames, const Re
   page.sections.push_back(std::move(scenes));
   ReportTable shown = score_table(report, "all");
   shown.caption = "Scores of the filters shown";
+  shown.open = false;
   page.sections.push_back(
       {"Frames",
        {},

@@ -15,7 +15,8 @@ namespace {
 std::string label_of(std::string name) {
   if (name == "best_threshold") return "t";
   std::ranges::replace(name, '_', ' ');
-  for (const auto& [from, to] : {std::pair{"fpr", "FPR"}, {"fnr", "FNR"}, {"iou", "IoU"}, {"f1", "F1"}}) {
+  for (const auto& [from, to] :
+       {std::pair{"fpr", "FPR"}, {"fnr", "FNR"}, {"iou", "IoU"}, {"f1", "F1"}, {"brier", "Brier"}}) {
     const std::string_view word = from;
     for (std::size_t at = name.find(word); at != name.npos; at = name.find(word)) name.replace(at, word.size(), to);
   }

@@ -96,9 +96,10 @@ std::string range_of(const std::optional<std::pair<double, double>>& range) {
 void put_axes(std::string& script, const Plot& plot) {
   const std::size_t names = plot.categories.size();
   if (plot.sideways) {
-    script +=
-        fmt::format("set xrange {}\nset yrange [{}:-0.5]\nset xtics auto norotate\nset ytics ()\nset key samplen 2\n",
-                    range_of(plot.y_range), static_cast<double>(names) - 0.5);
+    script += fmt::format(
+        "set xrange {}\nset yrange [{}:-0.5]\nset xtics auto norotate\nset ytics ()\nset key samplen 2\nset rmargin "
+        "4\n",
+        range_of(plot.y_range), static_cast<double>(names) - 0.5);
   } else {
     script +=
         fmt::format("set xrange {}\nset yrange {}\nset ytics auto\n", range_of(plot.x_range), range_of(plot.y_range));

@@ -65,6 +65,7 @@ details caption { display: none; }
 details .scroll { max-height: 32rem; }
 
 @media (max-width: 40rem) {
+  thead th.long { min-width: 7rem; }
   body { padding: 1.25rem 1rem 3rem; }
   h1 { font-size: 1.5rem; }
 }
@@ -73,7 +74,7 @@ details .scroll { max-height: 32rem; }
   body { max-width: none; padding: 0; font-size: 10pt; }
   nav, .scroll::-webkit-scrollbar { display: none; }
   h2, h3, .label, summary { break-after: avoid; }
-  figure > svg, .tile, tr { break-inside: avoid; }
+  figure:not(.wide), figcaption, .tile, tr { break-inside: avoid; }
   figcaption { break-before: avoid; }
   .figures { grid-template-columns: 1fr 1fr; gap: 1.5rem; }
   .scroll, details .scroll { max-height: none; overflow: visible; border: 0; }

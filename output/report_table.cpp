@@ -10,6 +10,7 @@ namespace ensonify {
 namespace {
 
 constexpr std::size_t most_open_rows = 12;
+constexpr std::size_t longest_narrow = 14;  ///< letters of a column's name
 
 std::string cell(const std::string& text, std::size_t column, const ReportTable& table) {
   const auto heads = static_cast<std::size_t>(table.heads);
@@ -37,8 +38,10 @@ std::string html_table(const ReportTable& table) {
       fmt::format("<div class=\"scroll\" role=\"region\" tabindex=\"0\" aria-label=\"{}\">\n<table>\n", caption);
   html += fmt::format("<caption><span>{}</span></caption>\n<thead><tr>", caption);
   for (std::size_t c = 0; c < table.columns.size(); ++c) {
-    const bool head = c < static_cast<std::size_t>(table.heads);
-    html += fmt::format("<th scope=\"col\"{}>{}</th>", head ? " class=\"head\"" : "", escaped(table.columns[c]));
+    const char* kind = c < static_cast<std::size_t>(table.heads)  ? " class=\"head\""
+                       : table.columns[c].size() > longest_narrow ? " class=\"long\""
+                                                                  : "";
+    html += fmt::format("<th scope=\"col\"{}>{}</th>", kind, escaped(table.columns[c]));
   }
   html += "</tr></thead>\n<tbody>\n";
   for (const auto& row : table.rows) {

@@ -10,7 +10,10 @@
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/cli/progress.hpp"
+#include "ensonify/cli/report_files.hpp"
+#include "ensonify/evaluation/filter_page.hpp"
 #include "ensonify/generators/evaluate_filters.hpp"
+#include "ensonify/generators/report_source.hpp"
 #include "ensonify/generators/tune_filters.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/png.hpp"
@@ -26,7 +29,7 @@ struct Arguments {
   std::vector<std::string> chains;
   std::string preset = "tuned", grid = "grid";
   EvaluateOptions options;
-  bool tune = false;
+  bool tune = false, html = false;
   int jobs = 0;
   std::string progress = "auto";
 };
@@ -71,11 +74,13 @@ void run_filters(const Arguments& a) {
   write_file(out / "filters.csv", scores_csv(report));
   write_file(out / "filters.json", scores_json(report));
   write_file(out / "times.csv", times_csv(report));
-  write_file(out / "filters.png", draw_plots(scores_plots(report)));
-  write_file(out / "frames.png", encode_png(draw_contact_sheet(filter_sheet(dataset, candidates))));
+  write_plots(out / "filters.png", scores_plots(report), a.html);
+  ContactSheet frames = filter_sheet(dataset, candidates);
+  write_file(out / "frames.png", encode_png(draw_contact_sheet(frames)));
   fmt::print("{}, {} frames of test, thresholds chosen on {} of val\n{}", report.dataset, report.test_frames,
              report.val_frames, scores_table(report));
   fmt::print("filters.csv filters.json times.csv filters.png frames.png in {}\n", a.out);
+  if (a.html) write_report(out / "filters.html", filter_page(report, std::move(frames), report_source(dataset)));
 }
 
 void add_filters(CLI::App& evaluate) {
@@ -88,7 +93,12 @@ void add_filters(CLI::App& evaluate) {
   command->add_option("--chain", a->chains, "Score this chain (YAML file or bundled name) or method too; repeat")
       ->allow_extra_args(false);
   command->add_option("--preset", a->preset, "Preset that stands beside the paper's parameters")->capture_default_str();
-  command->add_flag("--tune", a->tune, "Choose parameters on the val split instead, and write them as a preset");
+  auto* tune =
+      command->add_flag("--tune", a->tune, "Choose parameters on the val split instead, and write them as a preset");
+  command
+      ->add_flag("--html", a->html,
+                 "Also write filters.html: all scores and figures in one file, to look at or to send")
+      ->excludes(tune);
   command->add_option("--grid", a->grid, "With --tune: the values to try")->capture_default_str();
   command
       ->add_option("--max-frames", a->options.max_frames, "At most so many frames of a split, spread over its places")

@@ -11,8 +11,11 @@
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/cli/progress.hpp"
+#include "ensonify/cli/report_files.hpp"
 #include "ensonify/core/available_memory.hpp"
+#include "ensonify/evaluation/map_page.hpp"
 #include "ensonify/generators/evaluate_maps.hpp"
+#include "ensonify/generators/report_source.hpp"
 #include "ensonify/mapping/inverse_model.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/png.hpp"
@@ -27,7 +30,7 @@ struct Arguments {
   std::vector<std::string> filters{"raw", "wavelet", "lee_enhanced", "truth_mask", "clean"};
   std::vector<int> tolerances{1};
   MapEvaluation what;
-  bool no_post = false;
+  bool no_post = false, html = false;
   int jobs = 0;
   std::string progress = "auto";
 };
@@ -62,9 +65,9 @@ void run(const Arguments& a) {
   write_file(out / "map.json", map_scores_json(report));
   for (const char* poses : {"true", "drifted"}) {
     if (!std::ranges::any_of(report.curves, [&](const MapCurve& c) { return c.poses == poses; })) continue;
-    write_file(out / fmt::format("curves_{}.png", poses), draw_plots(map_plots(report, "all", poses)));
+    write_plots(out / fmt::format("curves_{}.png", poses), map_plots(report, "all", poses), a.html);
     for (const auto& [place, sheet] : result.pictures) {
-      write_file(out / fmt::format("curves_{}_{}.png", place, poses), draw_plots(map_plots(report, place, poses)));
+      write_plots(out / fmt::format("curves_{}_{}.png", place, poses), map_plots(report, place, poses), a.html);
     }
   }
   for (const auto& [place, sheet] : result.pictures) {
@@ -73,6 +76,7 @@ void run(const Arguments& a) {
   fmt::print("{}, split {}, all places, at the threshold with the best F1\n{}", report.dataset, report.split,
              map_table(report));
   fmt::print("map.csv summary.csv map.json curves_*.png maps_*.png in {}\n", a.out);
+  if (a.html) write_report(out / "map.html", map_page(report, result.pictures, report_source(dataset)));
 }
 
 }  // namespace
@@ -103,6 +107,8 @@ void add_evaluate_map(CLI::App& evaluate_command) {
   command->add_option("--split", a->what.split, "train, val or test")->capture_default_str();
   command->add_option("--max-frames", a->what.max_frames, "At most so many frames of a place, evenly spread")
       ->check(CLI::Range(1, 100'000'000));
+  command->add_flag("--html", a->html,
+                    "Also write map.html: all scores, curves and maps in one file, to look at or to send");
   command->add_option("--jobs", a->jobs, "Threads; the scores do not depend on it (default: all cores)")
       ->check(CLI::Range(1, 1024));
   command->add_option("--progress", a->progress, "auto, json or none")->check(CLI::IsMember({"auto", "json", "none"}));

@@ -9,8 +9,11 @@
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/cli/progress.hpp"
+#include "ensonify/cli/report_files.hpp"
 #include "ensonify/generators/even_tiles.hpp"
+#include "ensonify/generators/report_source.hpp"
 #include "ensonify/generators/stats_json.hpp"
+#include "ensonify/generators/stats_page.hpp"
 #include "ensonify/generators/stats_plots.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/png.hpp"
@@ -26,7 +29,7 @@ struct Arguments {
   StatsOptions options;
   int jobs = 0;
   double least_level = default_least_level;
-  bool json = false;
+  bool json = false, html = false;
   std::string progress = "auto";
 };
 
@@ -58,7 +61,8 @@ void run(const Arguments& a) {
   }
   ProgressLine progress(parse_progress_style(a.progress));
   const auto on_progress = [&](int done, int total) { progress.show("stats", done, done, total); };
-  const DatasetStats stats = dataset_stats(open_dataset(a.folder), a.options, on_progress);
+  const Dataset dataset = open_dataset(a.folder);
+  const DatasetStats stats = dataset_stats(dataset, a.options, on_progress);
   const std::string json = stats_json(stats);
   if (a.json) {
     fmt::print("{}", json);
@@ -67,12 +71,13 @@ void run(const Arguments& a) {
   const std::filesystem::path out =
       a.out.empty() ? std::filesystem::path(a.folder) / "stats" : std::filesystem::path(a.out);
   write_file(out / "stats.json", json);
-  write_file(out / "stats.png", draw_plots(stats_plots(stats)));
+  write_plots(out / "stats.png", stats_plots(stats), a.html);
   for (const auto& [split, sheet] : stats.contact_sheets) {
     write_file(out / fmt::format("contact_{}.png", split), encode_png(draw_contact_sheet(sheet)));
   }
   print_summary(stats);
   fmt::print("stats.json stats.png contact_*.png in {}\n", out.string());
+  if (a.html) write_report(out / "stats.html", stats_page(stats, report_source(dataset)));
 }
 
 }  // namespace
@@ -108,7 +113,11 @@ void add_stats(CLI::App& app) {
       ->excludes(against);
   command->add_option("--jobs", a->jobs, "Threads; the result does not depend on it (default: all cores)")
       ->check(CLI::Range(1, 1024));
-  command->add_flag("--json", a->json, "Print stats.json (against.json) and write nothing");
+  auto* json = command->add_flag("--json", a->json, "Print stats.json (against.json) and write nothing");
+  command
+      ->add_flag("--html", a->html, "Also write stats.html: all figures and tables in one file, to look at or to send")
+      ->excludes(json)
+      ->excludes(against);
   command->add_option("--progress", a->progress, "auto, json or none")->check(CLI::IsMember({"auto", "json", "none"}));
   command->footer(
       "Example:\n  ensonify stats out/quick\n  ensonify stats out/paper --max-frames 1000 --out out/look\n"

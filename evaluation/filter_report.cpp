@@ -56,25 +56,7 @@ Plot bars(const FilterReport& report, const char* title, const char* unit, Estim
   return plot;
 }
 
-/// What the curves show; all filters would hide each other.
 constexpr std::array of_the_paper{"raw", "lee_enhanced", "frost", "anisodiff", "wavelet"};
-
-Plot precision_over_recall(const FilterReport& report) {
-  Plot plot = titled_plot("Mask for every threshold, all scenes", "recall", "precision");
-  for (const FilterScores& row : report.rows) {
-    if (row.scene != "all" || std::ranges::find(of_the_paper, row.filter) == of_the_paper.end()) continue;
-    Series series{label(row), {}, {}};
-    for (int t = 1; t < 256; ++t) {
-      const MaskCounts counts = row.levels.at(t);
-      if (counts.true_positive == 0) break;
-      series.x.push_back(counts.recall());
-      series.y.push_back(counts.precision());
-    }
-    plot.series.push_back(std::move(series));
-  }
-  plot.x_range = plot.y_range = {{0.0, 1.0}};
-  return plot;
-}
 
 }  // namespace
 
@@ -123,6 +105,28 @@ std::string scores_json(const FilterReport& report) {
     root["rows"].push_back(std::move(entry));
   }
   return root.dump(1, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+bool is_of_the_paper(const FilterScores& row) {
+  return std::ranges::find(of_the_paper, row.filter) != of_the_paper.end();
+}
+
+Plot precision_over_recall(const FilterReport& report, const std::optional<std::string>& preset) {
+  Plot plot = titled_plot("Mask for every threshold, all scenes", "recall", "precision");
+  for (const FilterScores& row : report.rows) {
+    if (row.scene != "all" || !is_of_the_paper(row)) continue;
+    if (preset && !row.preset.empty() && row.preset != *preset) continue;
+    Series series{label(row), {}, {}};
+    for (int t = 1; t < 256; ++t) {
+      const MaskCounts counts = row.levels.at(t);
+      if (counts.true_positive == 0) break;
+      series.x.push_back(counts.recall());
+      series.y.push_back(counts.precision());
+    }
+    plot.series.push_back(std::move(series));
+  }
+  plot.x_range = plot.y_range = {{0.0, 1.0}};
+  return plot;
 }
 
 PlotSheet scores_plots(const FilterReport& report) {

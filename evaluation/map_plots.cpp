@@ -24,26 +24,39 @@ Plot over_threshold(const MapReport& report, const std::vector<const MapCurve*>&
 
 }  // namespace
 
-PlotSheet map_plots(const MapReport& report, const std::string& scene, const std::string& poses) {
+std::vector<ModelPlots> model_plots(const MapReport& report, const std::string& scene, const std::string& poses) {
   std::vector<std::string> models;
   for (const MapCurve& curve : report.curves) {
     if (std::ranges::find(models, curve.model) == models.end()) models.push_back(curve.model);
   }
-  PlotSheet sheet;
   const std::size_t last = report.tolerances.size() - 1;
+  std::vector<ModelPlots> result;
   for (const std::string& model : models) {
     std::vector<const MapCurve*> curves;
     for (const MapCurve& curve : report.curves) {
       if (curve.model == model && curve.scene == scene && curve.poses == poses) curves.push_back(&curve);
     }
-    const auto add = [&](const std::string& what, const char* unit, double (*value)(const MapCounts&, std::size_t)) {
-      sheet.plots.push_back(over_threshold(report, curves, model + ": " + what, unit, value, last));
+    const auto plot = [&](const std::string& what, const char* unit, double (*value)(const MapCounts&, std::size_t)) {
+      return over_threshold(report, curves, model + ": " + what, unit, value, last);
     };
-    add("occupied cells called free", "FPR", [](const MapCounts& n, std::size_t) { return n.fpr(); });
-    add("free cells called occupied", "FNR", [](const MapCounts& n, std::size_t) { return n.fnr(); });
-    add("known share of observable cells", "coverage", [](const MapCounts& n, std::size_t) { return n.coverage(); });
-    add(fmt::format("occupied, {} cell tolerance", report.tolerances[last]), "F1",
-        [](const MapCounts& n, std::size_t i) { return n.f1(i); });
+    result.push_back(
+        {model, plot("occupied cells called free", "FPR", [](const MapCounts& n, std::size_t) { return n.fpr(); }),
+         plot("free cells called occupied", "FNR", [](const MapCounts& n, std::size_t) { return n.fnr(); }),
+         plot("cells called right", "balanced accuracy",
+              [](const MapCounts& n, std::size_t) { return n.balanced_accuracy(); }),
+         plot("known share of observable cells", "coverage",
+              [](const MapCounts& n, std::size_t) { return n.coverage(); }),
+         plot(fmt::format("occupied, {} cell tolerance", report.tolerances[last]), "F1",
+              [](const MapCounts& n, std::size_t i) { return n.f1(i); })});
+  }
+  return result;
+}
+
+PlotSheet map_plots(const MapReport& report, const std::string& scene, const std::string& poses) {
+  PlotSheet sheet;
+  std::vector<ModelPlots> models = model_plots(report, scene, poses);
+  for (ModelPlots& of : models) {
+    for (Plot* plot : {&of.fpr, &of.fnr, &of.coverage, &of.f1}) sheet.plots.push_back(std::move(*plot));
   }
   sheet.columns = 4;
   sheet.width = 2000;

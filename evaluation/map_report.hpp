@@ -40,6 +40,15 @@ std::string map_summary_csv(const MapReport& report);
 /// Both, null for 0 / 0.
 std::string map_scores_json(const MapReport& report);
 
+/// The curves of one model over the threshold, one a filter. F1 is that of the last tolerance.
+struct ModelPlots {
+  std::string model;
+  Plot fpr, fnr, balanced_accuracy, coverage, f1;
+};
+
+/// Only for a scene and poses; a model each.
+std::vector<ModelPlots> model_plots(const MapReport& report, const std::string& scene, const std::string& poses);
+
 /// FPR, FNR, coverage and F1 over thresholds, a row a model and a curve a filter. Only for a scene and poses.
 PlotSheet map_plots(const MapReport& report, const std::string& scene, const std::string& poses);
 

@@ -80,29 +80,42 @@ const Summary* find(const std::map<std::string, Summary>& summaries, const std::
 
 }  // namespace
 
-PlotSheet stats_plots(const DatasetStats& stats) {
-  PlotSheet sheet;
-  sheet.plots = {
-      spread_plot(stats, titled_plot("Mask share", "share of the frame's pixels", "share of frames"),
-                  [](const Figures& f) { return &f.mask_share; }),
-      grey_plot(stats, "Grey levels of raw", &PixelSums::raw),
-      grey_plot(stats, "Grey levels of clean", &PixelSums::clean),
-      range_plot(stats, titled_plot("Raw over range", "range [m]", "mean grey level"), &PixelSums::bin_raw, 257),
-      range_plot(stats, titled_plot("Mask over range", "range [m]", "share of pixels"), &PixelSums::bin_mask, 1)};
+StatsPlots plots_of(const DatasetStats& stats) {
+  StatsPlots plots;
+  plots.mask_share = spread_plot(stats, titled_plot("Mask share", "share of the frame's pixels", "share of frames"),
+                                 [](const Figures& f) { return &f.mask_share; });
+  plots.raw_levels = grey_plot(stats, "Grey levels of raw", &PixelSums::raw);
+  plots.clean_levels = grey_plot(stats, "Grey levels of clean", &PixelSums::clean);
+  plots.raw_over_range =
+      range_plot(stats, titled_plot("Raw over range", "range [m]", "mean grey level"), &PixelSums::bin_raw, 257);
+  plots.mask_over_range =
+      range_plot(stats, titled_plot("Mask over range", "range [m]", "share of pixels"), &PixelSums::bin_mask, 1);
   for (const auto& [key, label] : {std::pair{"depth_m", "depth [m]"},
                                    {"roll_deg", "roll [deg]"},
                                    {"pitch_deg", "pitch, nose down [deg]"},
                                    {"yaw_deg", "yaw [deg]"}}) {
     const std::string name = label;
     std::string title = name.substr(0, name.find_first_of(",["));
+    while (title.ends_with(' ')) title.pop_back();
     title.front() = static_cast<char>(std::toupper(title.front()));
-    sheet.plots.push_back(spread_plot(stats, titled_plot(title, name, "share of frames"),
-                                      [&](const Figures& f) { return find(f.poses, key); }));
+    plots.poses.emplace_back(key, spread_plot(stats, titled_plot(title, name, "share of frames"),
+                                              [&](const Figures& f) { return find(f.poses, key); }));
   }
   for (const auto& [key, summary] : stats.overall.sampled) {
-    if (sheet.plots.size() >= 9 + most_sampled_plots) break;
-    sheet.plots.push_back(spread_plot(stats, titled_plot("Sampled: " + key, key, "share of frames"),
-                                      [&](const Figures& f) { return find(f.sampled, key); }));
+    if (plots.sampled.size() >= most_sampled_plots) break;
+    plots.sampled.emplace_back(key, spread_plot(stats, titled_plot("Sampled: " + key, key, "share of frames"),
+                                                [&](const Figures& f) { return find(f.sampled, key); }));
+  }
+  return plots;
+}
+
+PlotSheet stats_plots(const DatasetStats& stats) {
+  StatsPlots plots = plots_of(stats);
+  PlotSheet sheet;
+  sheet.plots = {std::move(plots.mask_share), std::move(plots.raw_levels), std::move(plots.clean_levels),
+                 std::move(plots.raw_over_range), std::move(plots.mask_over_range)};
+  for (auto* named : {&plots.poses, &plots.sampled}) {
+    for (auto& [key, plot] : *named) sheet.plots.push_back(std::move(plot));
   }
   sheet.columns = 3;
   const int rows = (static_cast<int>(sheet.plots.size()) + sheet.columns - 1) / sheet.columns;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "ensonify/output/child_process.hpp"
@@ -19,6 +20,9 @@ constexpr const char* style_lines =
     "set linetype 5 lc rgb '#e69f00' lw 2\n"
     "set linetype 6 lc rgb '#56b4e9' lw 2 dt 2\n"
     "set linetype 7 lc rgb '#555555' lw 2 dt 3\n";
+
+/// Full and open shapes by turns, so that neighbours are told apart in grey too.
+constexpr std::array marks{7, 4, 9, 12, 5, 6, 2};
 
 /// A gnuplot string: escaped, without control characters and back quotes, which would run a program.
 std::string quoted(const std::string& text) {
@@ -38,14 +42,19 @@ bool has_point(const Series& series) {
   return false;
 }
 
-const char* drawn(Series::Style style) {
+std::string drawn(Series::Style style, std::size_t index) {
+  const int mark = marks[index % marks.size()];
   switch (style) {
     case Series::Style::line:
       return "with lines";
     case Series::Style::thin_line:
       return "with lines lw 1 dt 1";
+    case Series::Style::marked_line:
+      return fmt::format("with linespoints pt {} ps 0.6 pn 9", mark);
     case Series::Style::points:
       return "with points pt 7 ps 0.5";
+    case Series::Style::points_with_errors:
+      return fmt::format("with xerrorbars pt {} ps 0.6 lw 1.5 dt 1", mark);
     case Series::Style::bars:
       return "with boxes fs solid 0.75 noborder";
     case Series::Style::bars_with_errors:
@@ -54,12 +63,21 @@ const char* drawn(Series::Style style) {
   return "";
 }
 
+bool has_errors(Series::Style style) {
+  return style == Series::Style::bars_with_errors || style == Series::Style::points_with_errors;
+}
+
+const char* columns_of(Series::Style style) {
+  if (style == Series::Style::points_with_errors) return "2:1:3:4";
+  return style == Series::Style::bars_with_errors ? "1:2:3:4:(0.8)" : "1:2";
+}
+
 void put_data(std::string& script, const Series& series, std::size_t plot, std::size_t index) {
   script += fmt::format("$d{}_{} << EOD\n", plot, index);
   for (std::size_t i = 0; i < std::min(series.x.size(), series.y.size()); ++i) {
     if (std::isfinite(series.x[i]) && std::isfinite(series.y[i])) {
       script += fmt::format("{:.9g} {:.9g}", series.x[i], series.y[i]);
-      if (series.style == Series::Style::bars_with_errors) {
+      if (has_errors(series.style)) {
         const auto or_y = [&](double end) { return std::isfinite(end) ? end : series.y[i]; };
         script += fmt::format(" {:.9g} {:.9g}", or_y(series.y_low.at(i)), or_y(series.y_high.at(i)));
       }
@@ -75,17 +93,30 @@ std::string range_of(const std::optional<std::pair<double, double>>& range) {
   return range ? fmt::format("[{:.9g}:{:.9g}]", range->first, range->second) : "[*:*]";
 }
 
+void put_axes(std::string& script, const Plot& plot) {
+  const std::size_t names = plot.categories.size();
+  if (plot.sideways) {
+    script += fmt::format(
+        "set xrange {}\nset yrange [{}:-0.5]\nset xtics auto norotate\nset ytics ()\nset key samplen 2\nset rmargin "
+        "4\n",
+        range_of(plot.y_range), static_cast<double>(names) - 0.5);
+  } else {
+    script +=
+        fmt::format("set xrange {}\nset yrange {}\nset ytics auto\n", range_of(plot.x_range), range_of(plot.y_range));
+    script += names == 0 ? "set xtics auto norotate\nset rmargin -1\n" : "set xtics rotate by -35 ()\nset rmargin 10\n";
+  }
+  for (std::size_t c = 0; c < names; ++c) {
+    script += fmt::format("set {}tics add ({} {})\n", plot.sideways ? 'y' : 'x', quoted(plot.categories[c]), c);
+  }
+}
+
 void put_plot(std::string& script, const Plot& plot, std::size_t at) {
   for (std::size_t s = 0; s < plot.series.size(); ++s) put_data(script, plot.series[s], at, s);
-  script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(plot.title), quoted(plot.x_label),
-                        quoted(plot.y_label));
-  script += fmt::format("set xrange {}\nset yrange {}\n", range_of(plot.x_range), range_of(plot.y_range));
+  const std::string x_label = quoted(plot.x_label), y_label = quoted(plot.y_label);
+  script += fmt::format("set title {}\nset xlabel {}\nset ylabel {}\n", quoted(plot.title),
+                        plot.sideways ? y_label : x_label, plot.sideways ? x_label : y_label);
   script += plot.equal_scale ? "set size ratio -1\n" : "set size noratio\n";
-  script += plot.categories.empty() ? "set xtics auto norotate\nset rmargin -1\n"
-                                    : "set xtics rotate by -35 ()\nset rmargin 10\n";
-  for (std::size_t c = 0; c < plot.categories.size(); ++c) {
-    script += fmt::format("set xtics add ({} {})\n", quoted(plot.categories[c]), c);
-  }
+  put_axes(script, plot);
   std::string items;
   if (plot.backdrop) {
     const Backdrop& b = *plot.backdrop;
@@ -98,9 +129,9 @@ void put_plot(std::string& script, const Plot& plot, std::size_t at) {
   for (std::size_t s = 0; s < plot.series.size(); ++s) {
     if (!has_point(plot.series[s])) continue;
     if (!items.empty()) items += ", ";
-    const bool errors = plot.series[s].style == Series::Style::bars_with_errors;
-    items += fmt::format("$d{}_{} using {} {} lt {} title {}", at, s, errors ? "1:2:3:4:(0.8)" : "1:2",
-                         drawn(plot.series[s].style), s % 7 + 1, quoted(plot.series[s].name));
+    const Series::Style style = plot.series[s].style;
+    items += fmt::format("$d{}_{} using {} {} lt {} title {}", at, s, columns_of(style), drawn(style, s), s % 7 + 1,
+                         quoted(plot.series[s].name));
   }
   if (items.empty()) items = "[0:1][0:1] 2 notitle";  // an empty frame: gnuplot refuses to draw nothing
   script += "plot " + items + "\n";
@@ -124,8 +155,9 @@ Plot titled_plot(std::string title, std::string x_label, std::string y_label) {
 std::vector<std::uint8_t> draw_plots(const PlotSheet& sheet, PlotFormat format) {
   const int columns = std::max(1, sheet.columns);
   const int rows = (static_cast<int>(sheet.plots.size()) + columns - 1) / columns;
-  std::string script = fmt::format("set terminal {} size {},{} noenhanced font 'DejaVu Sans,10' background '#ffffff'\n",
-                                   format == PlotFormat::png ? "pngcairo" : "svg", sheet.width, sheet.height);
+  std::string script =
+      fmt::format("set terminal {} size {},{} noenhanced font 'DejaVu Sans,{}' background '#ffffff'\n",
+                  format == PlotFormat::png ? "pngcairo" : "svg", sheet.width, sheet.height, sheet.font_size);
   script += style_lines;
   script += "set encoding utf8\nset grid lc rgb '#cccccc' lw 0.5\nset border lw 0.7\nset tics out nomirror\n";
   script += "set style data lines\nset boxwidth 0.9 relative\nset key tmargin center horizontal noenhanced\n";

@@ -13,11 +13,11 @@ namespace ensonify {
 
 /// One curve, or set of marks, of a plot. x and y are equally long; a NaN interrupts a line.
 struct Series {
-  enum class Style { line, thin_line, points, bars, bars_with_errors };
+  enum class Style { line, thin_line, marked_line, points, points_with_errors, bars, bars_with_errors };
   std::string name;  ///< in the legend; empty: not named there
   std::vector<double> x, y;
   Style style = Style::line;
-  std::vector<double> y_low = {}, y_high = {};  ///< of bars_with_errors; NaN: none there
+  std::vector<double> y_low = {}, y_high = {};  ///< of *_with_errors; NaN: none there
 };
 
 /// A picture under the curves, its outer edges at these coordinates (row 0 on top).
@@ -33,6 +33,7 @@ struct Plot {
   std::optional<std::pair<double, double>> x_range = {}, y_range = {};  ///< none: from the data
   bool equal_scale = false;                                             ///< a unit of x is as long as one of y
   std::vector<std::string> categories = {};                             ///< names of x = 0, 1, 2, ...
+  bool sideways = false;  ///< x downwards and y to the right: room for long names; for points_with_errors alone
 };
 
 Plot titled_plot(std::string title, std::string x_label, std::string y_label);
@@ -42,6 +43,7 @@ struct PlotSheet {
   std::vector<Plot> plots;
   int columns = 1;
   int width = 900, height = 600;  ///< pixels of the whole sheet
+  int font_size = 10;             ///< pixels
 };
 
 enum class PlotFormat { png, svg };

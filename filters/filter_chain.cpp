@@ -134,7 +134,9 @@ FilterChain chain_for_maps(FilterChain filter, bool post_process) {
   auto& steps = filter.steps;
   if (!steps.empty() && role_of(steps.back().method) == FilterRole::detects) steps.push_back({Mask{}});
   if (post_process) {
-    steps.push_back({Unsharp{}});
+    const bool sharp =
+        std::ranges::any_of(steps, [](const FilterStep& step) { return std::holds_alternative<Unsharp>(step.method); });
+    if (!sharp) steps.push_back({Unsharp{}});
     steps.push_back({Equalize{}});
   }
   return filter;

@@ -32,7 +32,8 @@ FilterChain find_filter(const std::string& method_or_chain);
 FilterChain find_filter_or_none(const std::string& name);
 
 /// The chain that Lin et al. 2023 put before their mapper: the filter (no steps: the raw image); where it ends in a
-/// mask, that mask applied to the raw image; and, where `post_process`, the unsharp filter and histogram equalisation.
+/// mask, that mask applied to the raw image; and, where `post_process`, the unsharp filter, unless the chain has it
+/// already, and histogram equalisation.
 FilterChain chain_for_maps(FilterChain filter, bool post_process);
 
 /// Chosen parameters for methods (path or bundled name; the key `methods` holds a mapping a method).

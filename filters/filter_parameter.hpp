@@ -23,10 +23,13 @@ enum class FilterVariant { published, pyradar };
 enum class WaveletRule { visu, bayes };
 /// How the cells on both sides of a cell give its background (Gandhi and Kassam 1988).
 enum class CfarRule { ca, soca, goca, os };
+/// What a network that finds echoes gives: their mask of 0 and 255, or their probability times 255.
+enum class EchoOutput { mask, probability };
 
 constexpr std::array<const char*, 2> choice_names(FilterVariant) { return {"published", "pyradar"}; }
 constexpr std::array<const char*, 2> choice_names(WaveletRule) { return {"visu", "bayes"}; }
 constexpr std::array<const char*, 4> choice_names(CfarRule) { return {"ca", "soca", "goca", "os"}; }
+constexpr std::array<const char*, 2> choice_names(EchoOutput) { return {"mask", "probability"}; }
 
 /// Side of a square window in pixels: odd, so that it has a centre.
 struct WindowSize {
@@ -38,7 +41,8 @@ template <typename Method>
 struct FilterParameter {
   const char* name;
   std::variant<double Method::*, std::optional<double> Method::*, int Method::*, WindowSize Method::*,
-               FilterVariant Method::*, WaveletRule Method::*, CfarRule Method::*, ModelFile Method::*>
+               FilterVariant Method::*, WaveletRule Method::*, CfarRule Method::*, EchoOutput Method::*,
+               ModelFile Method::*>
       member;
   const char* about;
   Limits limits = any_number;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <type_traits>
+#include <utility>
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/filters/learned_model.hpp"
@@ -28,24 +29,28 @@ const LearnedModel& model_of(const Method& method) {
   }
 }
 
+Image2<float> to_levels(Image2<float> shares) {
+  for (float& pixel : shares.pixels()) pixel *= 255.0F;
+  return shares;
+}
+
 template <typename Method>
-Image2<float> mask_of(const Method& method, const GreyImage& image) {
+Image2<float> echoes(const Method& method, const GreyImage& image) {
   const LearnedModel& model = model_of(method);
+  Image2<float> probability = model.probability(image.grey);
+  if (method.output == EchoOutput::probability) return to_levels(std::move(probability));
   const double least = method.threshold.value_or(model.card().threshold);
-  Image2<float> mask = model.probability(image.grey);
-  for (float& pixel : mask.pixels()) pixel = pixel >= least ? 255.0F : 0.0F;
-  return mask;
+  for (float& pixel : probability.pixels()) pixel = pixel >= least ? 255.0F : 0.0F;
+  return probability;
 }
 
 }  // namespace
 
-Image2<float> apply(const Unet& method, const GreyImage& image) { return mask_of(method, image); }
+Image2<float> apply(const Unet& method, const GreyImage& image) { return echoes(method, image); }
+Image2<float> apply(const Pix2Pix& method, const GreyImage& image) { return echoes(method, image); }
 Image2<float> apply(const UnetClean& method, const GreyImage& image) {
-  Image2<float> clean = model_of(method).outputs(image.grey).clean.value();
-  for (float& pixel : clean.pixels()) pixel *= 255.0F;
-  return clean;
+  return to_levels(model_of(method).outputs(image.grey).clean.value());
 }
-Image2<float> apply(const Pix2Pix& method, const GreyImage& image) { return mask_of(method, image); }
 void check(const Unet& method) { model_of(method); }
 void check(const UnetClean& method) { model_of(method); }
 void check(const Pix2Pix& method) { model_of(method); }

@@ -10,16 +10,20 @@
 /// Masks and clean images by networks that ensonify.training trained; docs/learned_filter.md.
 namespace ensonify {
 
+/// The bundled model that was trained on the acoustics of a real sonar.
+constexpr const char* usual_model = "realistic";
+
 template <typename Method>
-constexpr FilterParameter<Method> model_parameter() {
-  return {"model", &Method::model, "the network, with its card (.json) beside it", {}, "", "must be given"};
+constexpr FilterParameter<Method> model_parameter(const char* otherwise = "") {
+  return {"model", &Method::model, "the network, with its card (.json) beside it", {}, "", otherwise};
 }
 
 template <typename Method>
-constexpr std::array<FilterParameter<Method>, 2> learned_parameters() {
+constexpr std::array<FilterParameter<Method>, 3> learned_parameters(const char* model_otherwise = "") {
   using P = FilterParameter<Method>;
-  return {model_parameter<Method>(),
-          P{"threshold", &Method::threshold, "least probability of an echo", {0, 1}, "", "the card's"}};
+  return {model_parameter<Method>(model_otherwise),
+          P{"threshold", &Method::threshold, "least probability of an echo", {0, 1}, "", "the card's"},
+          P{"output", &Method::output, "the mask, or the probability times 255"}};
 }
 
 /// A U-Net trained by cross-entropy and Dice.
@@ -28,8 +32,9 @@ struct Unet {
   static constexpr const char* network = name;
   static constexpr const char* source = "Ronneberger, Fischer, Brox 2015, with the layers of pix2pix; oneDNN";
   static constexpr FilterRole role = FilterRole::detects;
-  ModelFile model;
+  ModelFile model{usual_model};
   std::optional<double> threshold;
+  EchoOutput output = EchoOutput::mask;
   static constexpr auto parameters() { return learned_parameters<Unet>(); }
 };
 
@@ -39,7 +44,7 @@ struct UnetClean {
   static constexpr const char* network = "unet";
   static constexpr const char* source = "as unet";
   static constexpr FilterRole role = FilterRole::despeckles;
-  ModelFile model;
+  ModelFile model{usual_model};
   static constexpr std::array<FilterParameter<UnetClean>, 1> parameters() { return {model_parameter<UnetClean>()}; }
 };
 
@@ -51,7 +56,8 @@ struct Pix2Pix {
   static constexpr FilterRole role = FilterRole::detects;
   ModelFile model;
   std::optional<double> threshold;
-  static constexpr auto parameters() { return learned_parameters<Pix2Pix>(); }
+  EchoOutput output = EchoOutput::mask;
+  static constexpr auto parameters() { return learned_parameters<Pix2Pix>("must be given"); }
 };
 
 /// Throws ConfigError: no model is named, it is of the other network, or gives no clean image; DataError: it is broken.

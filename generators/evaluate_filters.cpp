@@ -6,8 +6,11 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <iterator>
 #include <mutex>
 
+#include "ensonify/config/library.hpp"
+#include "ensonify/core/error.hpp"
 #include "ensonify/filters/filter_registry.hpp"
 #include "ensonify/generators/split_frames.hpp"
 
@@ -84,12 +87,34 @@ FrameScores judge_truth(const JudgedFrame& frame) {
   return scores;
 }
 
+/// A learned method with every bundled model that goes with it. Probabilities instead of masks, so that thresholds are
+/// chosen on the dataset as for all others.
+std::vector<FilterCandidate> learned_candidates(const MethodInfo& method) {
+  std::vector<FilterCandidate> candidates;
+  for (const std::string& model : library_names("filters/models", ".onnx")) {
+    FilterStep step = make_filter(method.name);
+    set_parameter(step, "model", model);
+    if (method.role == FilterRole::detects) set_parameter(step, "output", "probability");
+    try {
+      check_filter(step);
+    } catch (const ConfigError&) {
+      continue;  // of another network, or without such an output
+    }
+    candidates.push_back({method.name, model, {method.name, {std::move(step)}}});
+  }
+  return candidates;
+}
+
 }  // namespace
 
 std::vector<FilterCandidate> all_candidates(const FilterPreset& tuned) {
   std::vector<FilterCandidate> candidates{{"raw", "", {"raw", {}}}};
   for (const MethodInfo& method : filter_methods()) {
-    if (method.role == FilterRole::finishes || method.name == "threshold" || !method.ready) continue;
+    if (method.role == FilterRole::finishes || method.name == "threshold") continue;
+    if (std::ranges::find(method.parameters, "model", &ParameterInfo::name) != method.parameters.end()) {
+      std::ranges::move(learned_candidates(method), std::back_inserter(candidates));
+      continue;
+    }
     candidates.push_back({method.name, "paper", {method.name, {make_filter(method.name)}}});
     if (const auto found = tuned.methods.find(method.name); found != tuned.methods.end()) {
       candidates.push_back({method.name, tuned.name, {method.name, {found->second}}});

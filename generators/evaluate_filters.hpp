@@ -17,7 +17,7 @@ struct FilterCandidate {
 };
 
 /// The raw image, then every despeckler and detector: with its defaults (preset "paper"), and as the preset `tuned` has
-/// it.
+/// it; learned ones with every bundled model (whose name is the preset).
 std::vector<FilterCandidate> all_candidates(const FilterPreset& tuned);
 
 struct EvaluateOptions {

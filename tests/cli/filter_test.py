@@ -110,8 +110,7 @@ class Images(ProgramTest):
                 (["anisodiff", "in.npy", "o.npy", "--set", "gamma=nan"], ["gamma must be a number"]),
                 (["lee", "in.npy", "o.tiff"], [".png, .exr or .npy"]),
                 (["lee", "in.npy", "o.npy", "--preset", "tunned"], ["tuned"]),
-                (["unet", "in.npy", "o.npy"], ["model must be given", "docs/learned_filter.md"]),
-                (["unet_clean", "in.npy", "o.npy"], ["model must be given", "docs/learned_filter.md"]),
+                (["pix2pix", "in.npy", "o.npy"], ["model must be given", "docs/learned_filter.md"]),
                 (["unet_clean", "in.npy", "o.npy", "--set", "domain=log"], ["unet_clean has no parameter 'domain'"]),
                 (["pix2pix", "in.npy", "o.npy", "--set", "model=no.onnx"], ["no.onnx: no such file", "docs/learned_filter.md"]),
                 (["lee", "in.npy"], ["METHOD, INPUT and OUTPUT"])):

@@ -105,7 +105,9 @@ TEST(FilterRegistry, EveryParameterCanBeSetToWhatItsListSays) {
       EXPECT_EQ(set_parameter(step, key, value), "") << method.name << " " << key;
     }
     EXPECT_EQ(parameter_values(step), parameter_values(make_filter(method.name)));
-    if (method.ready) EXPECT_NO_THROW(check_filter(step));
+    if (method.ready) {
+      EXPECT_NO_THROW(check_filter(step));
+    }
   }
 }
 

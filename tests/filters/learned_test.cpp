@@ -17,6 +17,7 @@
 #include "ensonify/filters/learned_model.hpp"
 #include "ensonify/filters/network.hpp"
 #include "ensonify/output/grey_file.hpp"
+#include "ensonify/output/sha256.hpp"
 #include "support/network_maker.hpp"
 #include "support/test_folders.hpp"
 
@@ -125,6 +126,10 @@ TEST_F(Learned, MasksAreWhereTheProbabilityReachesTheThreshold) {
       EXPECT_EQ(mask.pixels()[i], probability.pixels()[i] >= least ? 255.0F : 0.0F);
     }
   }
+  FilterStep unet = step("unet", "unet.onnx");
+  assign_parameter(unet, "output=probability");
+  const Image2<float> levels = apply({"test", {unet}}, image).grey;
+  for (std::size_t i = 0; i < levels.size(); ++i) EXPECT_EQ(levels.pixels()[i], 255.0F * probability.pixels()[i]);
 }
 
 TEST_F(Learned, AnySizeAndDepthWorks) {
@@ -261,8 +266,8 @@ TEST_F(Learned, BrokenBytesNeverCrash) {
 
 TEST_F(Learned, FaultsNameTheFileAndTheCure) {
   const auto method_fault = [&](const FilterStep& made) { return fault_of<ConfigError>([&] { check_filter(made); }); };
-  EXPECT_THAT(method_fault(make_filter("unet")),
-              AllOf(HasSubstr("unet: model must be given"), HasSubstr("docs/learned_filter.md")));
+  EXPECT_THAT(method_fault(make_filter("pix2pix")),
+              AllOf(HasSubstr("pix2pix: model must be given"), HasSubstr("docs/learned_filter.md")));
   EXPECT_THAT(method_fault(step("unet", "absent.onnx")), AllOf(HasSubstr("absent.onnx"), HasSubstr("no such file")));
   EXPECT_THAT(method_fault(step("unet_clean", "unet.onnx")),
               AllOf(HasSubstr("unet_clean"), HasSubstr("gives no clean image")));
@@ -290,6 +295,21 @@ TEST_F(Learned, AChainFindsItsModelBesideIt) {
   write("chain.yaml", "name: mine\nsteps:\n  - {method: unet, model: unet.onnx, threshold: 0.4}\n  - {method: mask}\n");
   const FilterChain chain = load_filter_chain((folder / "chain.yaml").string());
   EXPECT_EQ(apply(chain, read_grey(goldens() / "image.npy")).grey.rows(), 70);
+}
+
+/// Each bundled model gives what its card says; one of them is the default.
+TEST(BundledModels, AreWholeAndOneIsUsual) {
+  for (const char* name : {"paper", "realistic"}) {
+    for (const char* method : {"unet", "unet_clean"}) {
+      FilterStep step = make_filter(method);
+      assign_parameter(step, std::string("model=") + name);
+      EXPECT_NO_THROW(check_filter(step)) << name << " " << method;
+    }
+    const fs::path file = source_folder() / "filters/models/library" / (std::string(name) + ".onnx");
+    EXPECT_LE(fs::file_size(file), 8u << 20U);
+    EXPECT_THAT(bytes_of(fs::path(file).replace_extension(".json")), HasSubstr(sha256_of_file(file)));
+  }
+  EXPECT_NO_THROW(check_filter(make_filter("unet")));
 }
 
 }  // namespace

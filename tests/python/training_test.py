@@ -164,12 +164,15 @@ class TrainingTest(unittest.TestCase):
         self.assertEqual(card["heads"], ["echo", "clean"])
         self.assertGreater(card["metrics"]["clean_psnr_db"], 0)
         self.assertIn("clean_psnr_db", self.rows("of_clean")[0])
+        self.succeed("set", "--out", "of_other", "--steps", "2", "--val", "set", *tiny)
+        self.assertEqual(json.loads((self.folder / "of_other/model.json").read_text())["training"]["val"], "set")
+        self.refuse(2, ["split 'nowhere'"], "set", "--out", "x", "--val", "nowhere", *tiny)
         self.refuse(2, ["clean=True", "clean=False"], "set", "--out", "x", "--from", "of_clean/checkpoint.pt", *tiny)
         self.refuse(2, ["--clean goes with --model unet"], "set", "--out", "x", "--clean", "--model", "pix2pix")
         self.refuse(2, ["ngf=1", "ngf=2"], "set", "--out", "x", "--from", "of_set/checkpoint.pt", "--ngf", "2")
 
     def test_the_program_runs_an_untrained_network(self):
-        """Its biases are all alike, which OpenCV could not read."""
+        """Its biases are all alike, which torch would write once and refer to."""
         write_pairs(self.folder / "pairs", count=1)
         script = ("import pathlib; from ensonify.training import export, networks\n"
                   "for name in networks.NAMES:\n"

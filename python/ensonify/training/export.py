@@ -31,7 +31,7 @@ def onnx_bytes(network: UNet, kind: NetworkKind) -> bytes:
 
 def _tell_apart(tensors: typing.Sequence[torch.Tensor]) -> None:
     """Moves tensors that are alike, as biases of untrained networks are, by one bit: torch would write them once and refer
-    to them by Identity nodes, which OpenCV 4.6 can not read."""
+    to them by Identity nodes, which the program does not read."""
     seen: typing.List[torch.Tensor] = []
     with torch.no_grad():
         for tensor in tensors:

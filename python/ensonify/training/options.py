@@ -57,10 +57,10 @@ def parse_options(words: typing.Optional[typing.Sequence[str]] = None) -> argpar
     add("--crops", type=_count(1), default=4, help="crops of a frame, one after the other (default: %(default)s)")
     add("--lr", type=_rate, help="learning rate; falls to 0 over the second half (default: 1e-3; pix2pix 2e-4)")
     add("--seed", type=_count(0), default=0, help="of weights, frames and crops (default: %(default)s)")
-    add("--pairs", type=_count(1), help="train on so many pairs only, evenly spread")
-    add("--val", default="", help="a dataset's split (default: val); of a folder of pairs: another one, or the share of its "
-                                  "scenes that is held out (default: 0.2)")
-    add("--val-frames", type=_count(1), default=60, help="at most so many frames, evenly spread (default: %(default)s)")
+    add("--pairs", type=_count(1), help="train on so many pairs only, drawn at random")
+    add("--val", default="", help="a dataset's split (default: val), or another dataset, for its split val; of a folder of "
+                                  "pairs: another one, or the share of its scenes that is held out (default: 0.2)")
+    add("--val-frames", type=_count(1), default=60, help="at most so many frames, drawn at random (default: %(default)s)")
     add("--every", type=_count(1), default=250, help="steps between validations, each with a checkpoint (default: %(default)s)")
     add("--from", dest="start", type=pathlib.Path, metavar="MODEL", help="start from the best weights of this checkpoint.pt")
     add("--resume", action="store_true", help="go on with OUT/checkpoint.pt where there is one; same options, same result")

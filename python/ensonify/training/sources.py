@@ -51,9 +51,10 @@ def _grey(raw: Array) -> Array:
     return raw.astype(numpy.float32) / numpy.float32(257) if raw.dtype == numpy.uint16 else raw.astype(numpy.float32)
 
 
-def spread(count: int, most: int) -> typing.List[int]:
-    """At most `most` of `count` numbers, evenly spread."""
-    return [i * count // min(count, most) for i in range(min(count, most))]
+def chosen_of(count: int, most: int) -> typing.List[int]:
+    """At most `most` of `count` numbers, ascending; any fewer are among them. At random, the same each time: places take
+    turns in a dataset, so that every n-th frame would be of few of them."""
+    return sorted(numpy.random.default_rng(0).permutation(count)[:most].tolist())
 
 
 def _fields(clean: bool) -> typing.Tuple[str, ...]:
@@ -65,17 +66,20 @@ def _pair(sample: typing.Mapping[str, typing.Any], clean: bool) -> Pair:
 
 
 def dataset_source(folder: pathlib.Path, val: str, val_frames: int, most: typing.Optional[int], clean: bool) -> Source:
-    """A dataset of `ensonify generate`: its train split, and the split `val`, which shares no place with it."""
-    train, held = (FrameDataset(folder, split, fields=_fields(clean)) for split in ("train", val))
+    """A dataset of `ensonify generate`: its train split, and the split `val`, which shares no place with it, or the split
+    val of another dataset, where `val` is its folder."""
+    elsewhere = (pathlib.Path(val) / "dataset.json").is_file()
+    train = FrameDataset(folder, "train", fields=_fields(clean))
+    held = FrameDataset(val, "val", fields=_fields(clean)) if elsewhere else FrameDataset(folder, val, fields=_fields(clean))
     manifest = Dataset(folder)
     size = min(len(train), most or len(train))
-    chosen = spread(len(train), size)
+    chosen = chosen_of(len(train), size)
 
     def pair(frames: FrameDataset, number: int) -> Pair:
         return _pair(frames[number], clean)
 
     return Source(size, lambda n: pair(train, chosen[n]),
-                  [functools.partial(pair, held, number) for number in spread(len(held), val_frames)],
+                  [functools.partial(pair, held, number) for number in chosen_of(len(held), val_frames)],
                   {"data": manifest.name, "root_hash": manifest.root_hash, "pairs": size, "val": val})
 
 
@@ -96,7 +100,7 @@ def recipe_source(recipe: str, seed: int, val_frames: int, clean: bool) -> Sourc
         frame = made.make_frame(first + index)
         return _pair({name: getattr(frame, name) for name in (*_fields(clean), "place")}, clean)
 
-    return Source(None, lambda n: _pair(endless.frame(n), clean), [functools.partial(of_val, i) for i in spread(made.splits["val"], val_frames)],
+    return Source(None, lambda n: _pair(endless.frame(n), clean), [functools.partial(of_val, i) for i in chosen_of(made.splits["val"], val_frames)],
                   {"data": f"fresh frames of recipe {made.name}", "seed": seed, "val": "val"})
 
 
@@ -123,12 +127,12 @@ def folder_source(folder: pathlib.Path, val: str, val_frames: int, most: typing.
         kept = set(scenes[:min(len(scenes) - 1, max(1, round(len(scenes) * (1 - share))))])
         held = [(folder, name) for name in pairs if _scene(name) not in kept]
         pairs = [name for name in pairs if _scene(name) in kept]
-    pairs = [pairs[i] for i in spread(len(pairs), most or len(pairs))]
+    pairs = [pairs[i] for i in chosen_of(len(pairs), most or len(pairs))]
     digest = hashlib.sha256()
     for name in pairs:
         digest.update(name.encode() + (folder / "raw" / name).read_bytes() + (folder / "mask" / name).read_bytes())
     return Source(len(pairs), lambda n: _read_pair(folder, pairs[n]),
-                  [functools.partial(_read_pair, *held[i]) for i in spread(len(held), val_frames)],
+                  [functools.partial(_read_pair, *held[i]) for i in chosen_of(len(held), val_frames)],
                   {"data": folder.name, "root_hash": digest.hexdigest(), "pairs": len(pairs), "val": val})
 
 

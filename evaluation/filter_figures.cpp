@@ -20,7 +20,6 @@ constexpr std::array shown_scores{ShownScore{"", "PSNR [dB]", &FilterScores::psn
                                   ShownScore{"", "gated PSNR [dB]", &FilterScores::gated_psnr_db, 2},
                                   ShownScore{"", "masked PSNR [dB]", &FilterScores::masked_psnr_db, 2},
                                   ShownScore{"", "masked SSIM", &FilterScores::masked_ssim, 3},
-                                  ShownScore{"", "echoes kept", &FilterScores::kept, 3},
                                   ShownScore{"", "ghosts removed", &FilterScores::ghosts_removed, 3}};
 
 std::string name_of(const std::string& preset) { return preset.empty() ? "no preset" : preset; }
@@ -48,7 +47,7 @@ ReportTable score_table(const FilterReport& report, const std::string& scene) {
   for (const ShownScore& score : scores) table.columns.emplace_back(score.unit);
   for (const FilterScores& row : report.rows) {
     if (row.scene != scene) continue;
-    std::vector<std::string> cells{row.filter, row.preset, std::to_string(row.t.best)};
+    std::vector<std::string> cells{row.filter, row.preset, std::to_string(row.t)};
     for (const ShownScore& score : scores) cells.push_back(fixed((row.*score.estimate).value, score.digits));
     table.rows.push_back(std::move(cells));
   }

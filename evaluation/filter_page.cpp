@@ -52,7 +52,7 @@ ReportSection masks(const FilterReport& report, const std::string& tail) {
   if (has_ghosts(report)) {
     section.figures.push_back(score_figure(
         report, {"Ghosts removed", "share of multipath energy", &FilterScores::ghosts_removed, 3},
-        fmt::format("Energy of multipath below the threshold that keeps {:g} % of the direct echoes on val.",
+        fmt::format("Energy of multipath below the threshold that keeps {:g} % of the direct echoes of these frames.",
                     100 * kept_beside_ghosts) +
             pooled + tail));
   }

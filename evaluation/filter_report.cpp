@@ -28,7 +28,6 @@ constexpr std::array columns{Column{"psnr_db", &FilterScores::psnr_db},
                              Column{"recall", &FilterScores::recall},
                              Column{"iou", &FilterScores::iou},
                              Column{"f1", &FilterScores::f1},
-                             Column{"kept", &FilterScores::kept},
                              Column{"ghosts_removed", &FilterScores::ghosts_removed}};
 
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
@@ -61,12 +60,11 @@ constexpr std::array of_the_paper{"raw", "lee_enhanced", "frost", "anisodiff", "
 }  // namespace
 
 std::string scores_csv(const FilterReport& report) {
-  std::string text = "filter,preset,scene,frames,threshold,threshold_keeping";
+  std::string text = "filter,preset,scene,frames,threshold";
   for (const Column& c : columns) text += fmt::format(",{0},{0}_low,{0}_high", c.name);
   text += "\n";
   for (const FilterScores& row : report.rows) {
-    text += fmt::format("{},{},{},{},{},{}", row.filter, row.preset, row.scene, row.psnr_db.frames, row.t.best,
-                        row.t.keeping);
+    text += fmt::format("{},{},{},{},{}", row.filter, row.preset, row.scene, row.psnr_db.frames, row.t);
     for (const Column& c : columns) {
       const Estimate& e = row.*c.estimate;
       text += fmt::format(",{},{},{}", number(e.value), number(e.low), number(e.high));
@@ -92,11 +90,7 @@ std::string scores_json(const FilterReport& report) {
             {"confidence", 0.95},
             {"rows", json::array()}};
   for (const FilterScores& row : report.rows) {
-    json entry{{"filter", row.filter},
-               {"preset", row.preset},
-               {"scene", row.scene},
-               {"threshold", row.t.best},
-               {"threshold_keeping", row.t.keeping}};
+    json entry{{"filter", row.filter}, {"preset", row.preset}, {"scene", row.scene}, {"threshold", row.t}};
     for (const Column& c : columns) {
       const Estimate& e = row.*c.estimate;
       entry[c.name] = {
@@ -151,7 +145,7 @@ std::string scores_table(const FilterReport& report) {
     if (row.scene != "all") continue;
     text +=
         fmt::format("{:<14} {:<9} {:8.2f} {:6.3f} {:6.3f} {:4} {:6.3f} {:6.3f} {:6.3f} {:8.2f} {:8.2f} {:>7} {:8.2f}\n",
-                    row.filter, row.preset, row.psnr_db.value, row.ssim.value, row.edge_preservation.value, row.t.best,
+                    row.filter, row.preset, row.psnr_db.value, row.ssim.value, row.edge_preservation.value, row.t,
                     row.precision.value, row.recall.value, row.iou.value, row.gated_psnr_db.value,
                     row.masked_psnr_db.value, number(std::round(1000 * row.ghosts_removed.value) / 1000), row.time_ms);
   }

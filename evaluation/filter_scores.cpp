@@ -34,17 +34,24 @@ Estimate pooled(const std::vector<const FrameScores*>& frames, double (MaskCount
   return bootstrap_estimate(static_cast<int>(frames.size()), RandomKey::from_seed(0).child("pooled mask"), statistic);
 }
 
-Estimate pooled_share(const std::vector<const FrameScores*>& frames, double FrameScores::*part,
-                      double FrameScores::*whole) {
+/// The interval is that of the share at the threshold that all frames together give.
+Estimate ghosts_removed(const std::vector<const FrameScores*>& frames) {
+  GhostLevels sum;
+  for (const FrameScores* frame : frames) sum += frame->ghosts;
+  const int step = sum.step_keeping(kept_beside_ghosts);
+  std::vector<std::pair<double, double>> of_frame;
+  for (const FrameScores* frame : frames) {
+    of_frame.emplace_back(frame->ghosts.ghosts_removed(step), frame->ghosts.all_ghosts());
+  }
   const auto statistic = [&](std::span<const int> weights) {
-    double parts = 0, wholes = 0;
-    for (std::size_t i = 0; i < frames.size(); ++i) {
-      parts += weights[i] * frames[i]->*part;
-      wholes += weights[i] * frames[i]->*whole;
+    double removed = 0, all = 0;
+    for (std::size_t i = 0; i < of_frame.size(); ++i) {
+      removed += weights[i] * of_frame[i].first;
+      all += weights[i] * of_frame[i].second;
     }
-    return wholes > 0 ? parts / wholes : std::numeric_limits<double>::quiet_NaN();
+    return all > 0 ? removed / all : std::numeric_limits<double>::quiet_NaN();
   };
-  return bootstrap_estimate(static_cast<int>(frames.size()), RandomKey::from_seed(0).child("pooled share"), statistic);
+  return bootstrap_estimate(static_cast<int>(frames.size()), RandomKey::from_seed(0).child("ghosts"), statistic);
 }
 
 FilterScores pool(const std::vector<const FrameScores*>& frames) {
@@ -60,8 +67,7 @@ FilterScores pool(const std::vector<const FrameScores*>& frames) {
   scores.recall = pooled(frames, &MaskCounts::recall);
   scores.iou = pooled(frames, &MaskCounts::iou);
   scores.f1 = pooled(frames, &MaskCounts::f1);
-  scores.kept = pooled_share(frames, &FrameScores::kept, &FrameScores::echoes);
-  scores.ghosts_removed = pooled_share(frames, &FrameScores::ghosts_removed, &FrameScores::ghosts);
+  scores.ghosts_removed = ghosts_removed(frames);
   std::vector<double> times;
   for (const FrameScores* frame : frames) {
     scores.levels += frame->levels;
@@ -74,12 +80,12 @@ FilterScores pool(const std::vector<const FrameScores*>& frames) {
 
 }  // namespace
 
-FrameScores score_frame(const Image2<float>& filtered, const FrameTruth& truth, MaskThresholds t) {
+FrameScores score_frame(const Image2<float>& filtered, const FrameTruth& truth, int t) {
   const auto& [raw, clean, mask, labels] = truth;
   const Image2<float> image = held(filtered);
   Image2<float> masked(raw.rows(), raw.columns()), gated(raw.rows(), raw.columns());
   for (std::size_t i = 0; i < raw.size(); ++i) {
-    if (image.pixels()[i] < static_cast<float>(t.best)) continue;
+    if (image.pixels()[i] < static_cast<float>(t)) continue;
     masked.pixels()[i] = raw.pixels()[i];
     gated.pixels()[i] = image.pixels()[i];
   }
@@ -92,17 +98,12 @@ FrameScores score_frame(const Image2<float>& filtered, const FrameTruth& truth, 
   scores.masked_psnr_db = psnr_db(masked, clean);
   scores.masked_ssim = ssim(masked, clean);
   scores.levels = count_levels(image, mask);
-  scores.mask = scores.levels.at(t.best);
-  const MaskCounts kept = scores.levels.at(t.keeping);
-  scores.kept = static_cast<double>(kept.true_positive);
-  scores.echoes = static_cast<double>(kept.true_positive + kept.false_negative);
-  const GhostEnergy ghosts = ghost_energy(image, raw, labels);
-  scores.ghosts_removed = ghosts.removed(t.keeping);
-  scores.ghosts = ghosts.all();
+  scores.mask = scores.levels.at(t);
+  scores.ghosts = ghost_levels(image, raw, mask, labels);
   return scores;
 }
 
-std::vector<FilterScores> pool_scores(const std::string& filter, const std::string& preset, MaskThresholds t,
+std::vector<FilterScores> pool_scores(const std::string& filter, const std::string& preset, int t,
                                       const std::vector<FrameScores>& frames) {
   std::set<std::string> scenes;
   for (const FrameScores& frame : frames) scenes.insert(frame.scene);

@@ -10,14 +10,9 @@
 
 namespace ensonify {
 
-/// Share of the direct echoes' pixels that a filter must keep where the multipath it removes is measured.
+/// Share of the direct echoes' pixels that a filter keeps where the multipath it removes is measured: by a threshold of
+/// its own, chosen on the frames that are scored, as for a point of a ROC curve.
 constexpr double kept_beside_ghosts = 0.9;
-
-/// Grey levels from which on pixels are set, chosen on the val split.
-struct MaskThresholds {
-  int best = 1;     ///< greatest IoU
-  int keeping = 1;  ///< the greatest that keeps kept_beside_ghosts
-};
 
 /// A frame's images, levels of 0..255.
 struct FrameTruth {
@@ -35,27 +30,26 @@ struct FrameScores {
   double masked_psnr_db = 0, masked_ssim = 0;
   MaskCounts mask;
   LevelCounts levels;
-  double kept = 0, echoes = 0;            ///< pixels of direct echoes at the threshold `keeping`, and all
-  double ghosts_removed = 0, ghosts = 0;  ///< energy of multipath below that threshold, and all
-  double time_ms = 0;                     ///< of the filter alone
+  GhostLevels ghosts;
+  double time_ms = 0;  ///< of the filter alone
 };
 
-/// Scores of `filtered` (levels may lie outside 0..255: they are held to it) with masks "level >= threshold".
-FrameScores score_frame(const Image2<float>& filtered, const FrameTruth& truth, MaskThresholds thresholds);
+/// Scores of `filtered` (levels may lie outside 0..255: they are held to it) with the mask "level >= t".
+FrameScores score_frame(const Image2<float>& filtered, const FrameTruth& truth, int t);
 
 /// A filter's frames of one scene, or of all, put together: means over frames; mask figures of the pooled pixels.
 struct FilterScores {
   std::string filter, preset, scene;  ///< scene "all": every one
-  MaskThresholds t;
+  int t = 0;                          ///< chosen on the val split
   Estimate psnr_db, ssim, edge_preservation, looks, gated_psnr_db, masked_psnr_db, masked_ssim;
   Estimate precision, recall, iou, f1;
-  Estimate kept, ghosts_removed;  ///< shares; NaN where there is no multipath
-  double time_ms = 0;             ///< median
+  Estimate ghosts_removed;  ///< share of its energy; NaN where there is no multipath
+  double time_ms = 0;       ///< median
   LevelCounts levels;
 };
 
 /// One entry a scene, in the order of their names, and "all" first.
-std::vector<FilterScores> pool_scores(const std::string& filter, const std::string& preset, MaskThresholds t,
+std::vector<FilterScores> pool_scores(const std::string& filter, const std::string& preset, int t,
                                       const std::vector<FrameScores>& frames);
 
 }  // namespace ensonify

@@ -62,12 +62,6 @@ int LevelCounts::best_threshold() const {
   return best;
 }
 
-int LevelCounts::threshold_keeping(double share) const {
-  int t = 255;
-  while (t > 0 && !(at(t).recall() >= share)) --t;
-  return t;
-}
-
 LevelCounts count_levels(const Image2<float>& image, const Image2<std::uint8_t>& mask) {
   LevelCounts counts;
   for (std::size_t i = 0; i < image.size(); ++i) {

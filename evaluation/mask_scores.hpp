@@ -26,8 +26,6 @@ struct LevelCounts {
   MaskCounts at(int t) const;
   /// The threshold of 1..255 with the greatest IoU, and so the greatest F1; the lowest of equals.
   int best_threshold() const;
-  /// The greatest threshold of 0..255 that keeps that share of the true mask's pixels.
-  int threshold_keeping(double share) const;
 };
 
 LevelCounts count_levels(const Image2<float>& image, const Image2<std::uint8_t>& mask);

@@ -37,9 +37,8 @@ class Counter {
   std::mutex mutex_;
 };
 
-std::vector<MaskThresholds> choose_thresholds(const Dataset& dataset, const SplitFrames& frames,
-                                              const std::vector<FilterCandidate>& candidates,
-                                              const OnProgress& on_progress) {
+std::vector<int> choose_thresholds(const Dataset& dataset, const SplitFrames& frames,
+                                   const std::vector<FilterCandidate>& candidates, const OnProgress& on_progress) {
   std::vector<LevelCounts> counts(candidates.size());
   std::mutex mutex;
   Counter counter(on_progress, "val", static_cast<int>(frames.numbers.size()));
@@ -54,16 +53,16 @@ std::vector<MaskThresholds> choose_thresholds(const Dataset& dataset, const Spli
     }
     counter.one();
   });
-  std::vector<MaskThresholds> thresholds;
+  std::vector<int> thresholds;
   for (const LevelCounts& levels : counts) {
-    thresholds.push_back({levels.best_threshold(), levels.threshold_keeping(kept_beside_ghosts)});
+    thresholds.push_back(levels.best_threshold());
   }
   return thresholds;
 }
 
 FrameTruth truth_of(const JudgedFrame& frame) { return {frame.raw.grey, frame.clean, frame.mask, frame.labels}; }
 
-FrameScores judge(const FilterCandidate& candidate, MaskThresholds t, const JudgedFrame& frame) {
+FrameScores judge(const FilterCandidate& candidate, int t, const JudgedFrame& frame) {
   const auto begin = std::chrono::steady_clock::now();
   const GreyImage filtered = apply(candidate.chain, frame.raw);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
@@ -78,8 +77,8 @@ FrameScores judge_truth(const JudgedFrame& frame) {
   for (std::size_t i = 0; i < masked.size(); ++i) {
     if (frame.mask.pixels()[i] == 0) masked.pixels()[i] = 0.0F;
   }
-  FrameScores scores = score_frame(to_grey(frame.mask).grey, truth_of(frame), {1, 1});
-  const FrameScores of_image = score_frame(masked, truth_of(frame), {1, 1});
+  FrameScores scores = score_frame(to_grey(frame.mask).grey, truth_of(frame), 1);
+  const FrameScores of_image = score_frame(masked, truth_of(frame), 1);
   scores.psnr_db = scores.gated_psnr_db = of_image.psnr_db;
   scores.ssim = of_image.ssim;
   scores.edge_preservation = of_image.edge_preservation;
@@ -127,7 +126,7 @@ FilterReport evaluate_filters(const Dataset& dataset, const std::vector<FilterCa
                               const EvaluateOptions& options, const OnProgress& on_progress) {
   const SplitFrames val = choose_frames(dataset, "val", options.max_frames);
   const SplitFrames test = choose_frames(dataset, "test", options.max_frames);
-  const std::vector<MaskThresholds> thresholds = choose_thresholds(dataset, val, candidates, on_progress);
+  const std::vector<int> thresholds = choose_thresholds(dataset, val, candidates, on_progress);
 
   std::vector<std::vector<FrameScores>> scores(candidates.size() + 1, std::vector<FrameScores>(test.numbers.size()));
   Counter counter(on_progress, "test", static_cast<int>(test.numbers.size()));
@@ -144,13 +143,13 @@ FilterReport evaluate_filters(const Dataset& dataset, const std::vector<FilterCa
 
   FilterReport report{
       dataset.name, dataset.root_hash, static_cast<int>(val.numbers.size()), static_cast<int>(test.numbers.size()), {}};
-  const auto add = [&](const std::string& filter, const std::string& preset, MaskThresholds t,
+  const auto add = [&](const std::string& filter, const std::string& preset, int t,
                        const std::vector<FrameScores>& frames) {
     for (FilterScores& row : pool_scores(filter, preset, t, frames)) report.rows.push_back(std::move(row));
   };
   for (std::size_t i = 0; i < candidates.size(); ++i)
     add(candidates[i].name, candidates[i].preset, thresholds[i], scores[i]);
-  add("truth_mask", "", {1, 1}, scores.back());
+  add("truth_mask", "", 1, scores.back());
   return report;
 }
 

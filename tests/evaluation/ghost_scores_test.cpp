@@ -2,30 +2,47 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <tuple>
+#include <utility>
 
 #include "ensonify/core/echo.hpp"
 
 namespace ensonify {
 namespace {
 
-/// Two ghosts of raw levels 3 and 4 that the filter gives 10.9 and 300, held to 255; echoes and noise count nowhere.
-TEST(GhostScores, EnergyIsTheRawLevelsBelowTheThreshold) {
-  Image2<float> filtered(1, 4), raw(1, 4);
-  Image2<std::uint8_t> labels(1, 4);
+/// Two ghosts of raw levels 3 and 4, to which the filter gives 10.9 and 300 (held to 255), and four echoes in
+/// the middle of steps; step k begins at 255 (k / 255)^2.
+TEST(GhostScores, EnergyIsTheRawLevelsBelowTheThresholdThatKeepsTheEchoes) {
   constexpr auto ghost = static_cast<std::uint8_t>(PixelLabel::multipath);
   constexpr auto echo = static_cast<std::uint8_t>(PixelLabel::direct);
-  for (const auto& [column, level, of_raw, label] :
-       {std::tuple{0, 10.9F, 3.0F, ghost}, {1, 300.0F, 4.0F, ghost}, {2, 5.0F, 9.0F, echo}, {3, 5.0F, 9.0F, {}}}) {
+  Image2<float> filtered(1, 7), raw(1, 7, 9.0F);
+  Image2<std::uint8_t> mask(1, 7), labels(1, 7);
+  for (int i = 0; i < 4; ++i) {  // steps 20, 40, 80, 160 and a half
+    const double k = 20.5 * (1 << i);
+    filtered(0, i) = static_cast<float>(255.0 * (k / 255.0) * (k / 255.0));
+    mask(0, i) = 255;
+    labels(0, i) = echo;
+  }
+  for (const auto& [column, level, of_raw] : {std::tuple{4, 10.9F, 3.0F}, {5, 300.0F, 4.0F}}) {
     filtered(0, column) = level;
     raw(0, column) = of_raw;
-    labels(0, column) = label;
+    labels(0, column) = ghost;
   }
-  const GhostEnergy energy = ghost_energy(filtered, raw, labels);
-  EXPECT_DOUBLE_EQ(energy.all(), 9.0 + 16.0);
-  EXPECT_DOUBLE_EQ(energy.removed(10), 0.0);
-  EXPECT_DOUBLE_EQ(energy.removed(11), 9.0);
-  EXPECT_DOUBLE_EQ(energy.removed(255), 9.0);
+  filtered(0, 6) = 50.0F;  // noise
+  const GhostLevels levels = ghost_levels(filtered, raw, mask, labels);
+  EXPECT_DOUBLE_EQ(levels.all_echoes(), 4.0);
+  EXPECT_DOUBLE_EQ(levels.all_ghosts(), 9.0 + 16.0);
+  const int ghost_step = static_cast<int>(255.0 * std::sqrt(10.9 / 255.0));  // 52
+  EXPECT_DOUBLE_EQ(levels.ghosts_removed(ghost_step), 0.0);
+  EXPECT_DOUBLE_EQ(levels.ghosts_removed(ghost_step + 1), 9.0);
+  EXPECT_DOUBLE_EQ(levels.ghosts_removed(255), 9.0);
+  for (const auto& [share, kept] : {std::pair{1.0, 4.0}, {0.75, 3.0}, {0.6, 3.0}, {0.25, 1.0}}) {
+    const int step = levels.step_keeping(share);
+    EXPECT_DOUBLE_EQ(levels.echoes_kept(step), kept) << share;
+    EXPECT_LT(levels.echoes_kept(step + 1), share * 4.0) << share;
+  }
+  EXPECT_EQ(GhostLevels{}.step_keeping(0.9), 255);
 }
 
 }  // namespace

@@ -99,7 +99,7 @@ FrameScores score_frame(const Image2<float>& filtered, const FrameTruth& truth, 
   scores.masked_ssim = ssim(masked, clean);
   scores.levels = count_levels(image, mask);
   scores.mask = scores.levels.at(t);
-  scores.ghosts = ghost_levels(image, raw, mask, labels);
+  scores.ghosts = ghost_levels(image, raw, labels);
   return scores;
 }
 

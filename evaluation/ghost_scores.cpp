@@ -33,11 +33,10 @@ int GhostLevels::step_keeping(double share) const {
   return step;
 }
 
-GhostLevels ghost_levels(const Image2<float>& filtered, const Image2<float>& raw, const Image2<std::uint8_t>& mask,
-                         const Image2<std::uint8_t>& labels) {
+GhostLevels ghost_levels(const Image2<float>& filtered, const Image2<float>& raw, const Image2<std::uint8_t>& labels) {
   GhostLevels levels;
   for (std::size_t i = 0; i < filtered.size(); ++i) {
-    const bool echo = mask.pixels()[i] != 0;
+    const bool echo = labels.pixels()[i] == static_cast<std::uint8_t>(PixelLabel::direct);
     const bool ghost = labels.pixels()[i] == static_cast<std::uint8_t>(PixelLabel::multipath);
     if (!echo && !ghost) continue;
     const float share = std::clamp(filtered.pixels()[i], 0.0F, 255.0F) / 255.0F;

@@ -7,9 +7,10 @@
 
 namespace ensonify {
 
-/// What thresholds of a filter keep of the direct echoes and remove of the multipath: pixels of the mask, and energy
-/// (raw level squared) of the pixels labelled multipath, by the level the filter gives them. 256 steps of the level's
-/// square root, fine where levels are low, as probabilities of faint echoes are: step k begins at 255 (k / 255)^2.
+/// What thresholds of a filter keep of the direct echoes and remove of the multipath: pixels labelled direct, and
+/// energy (raw level squared) of the pixels labelled multipath, by the level the filter gives them. 256 steps of the
+/// level's square root, fine where levels are low, as probabilities of faint echoes are: step k begins at 255 (k /
+/// 255)^2.
 struct GhostLevels {
   std::array<std::uint64_t, 256> echoes{};
   std::array<double, 256> ghosts{};
@@ -25,7 +26,6 @@ struct GhostLevels {
   int step_keeping(double share) const;
 };
 
-GhostLevels ghost_levels(const Image2<float>& filtered, const Image2<float>& raw, const Image2<std::uint8_t>& mask,
-                         const Image2<std::uint8_t>& labels);
+GhostLevels ghost_levels(const Image2<float>& filtered, const Image2<float>& raw, const Image2<std::uint8_t>& labels);
 
 }  // namespace ensonify

@@ -17,11 +17,10 @@ TEST(GhostScores, EnergyIsTheRawLevelsBelowTheThresholdThatKeepsTheEchoes) {
   constexpr auto ghost = static_cast<std::uint8_t>(PixelLabel::multipath);
   constexpr auto echo = static_cast<std::uint8_t>(PixelLabel::direct);
   Image2<float> filtered(1, 7), raw(1, 7, 9.0F);
-  Image2<std::uint8_t> mask(1, 7), labels(1, 7);
+  Image2<std::uint8_t> labels(1, 7);
   for (int i = 0; i < 4; ++i) {  // steps 20, 40, 80, 160 and a half
     const double k = 20.5 * (1 << i);
     filtered(0, i) = static_cast<float>(255.0 * (k / 255.0) * (k / 255.0));
-    mask(0, i) = 255;
     labels(0, i) = echo;
   }
   for (const auto& [column, level, of_raw] : {std::tuple{4, 10.9F, 3.0F}, {5, 300.0F, 4.0F}}) {
@@ -30,7 +29,7 @@ TEST(GhostScores, EnergyIsTheRawLevelsBelowTheThresholdThatKeepsTheEchoes) {
     labels(0, column) = ghost;
   }
   filtered(0, 6) = 50.0F;  // noise
-  const GhostLevels levels = ghost_levels(filtered, raw, mask, labels);
+  const GhostLevels levels = ghost_levels(filtered, raw, labels);
   EXPECT_DOUBLE_EQ(levels.all_echoes(), 4.0);
   EXPECT_DOUBLE_EQ(levels.all_ghosts(), 9.0 + 16.0);
   const int ghost_step = static_cast<int>(255.0 * std::sqrt(10.9 / 255.0));  // 52

@@ -173,12 +173,18 @@ TEST_F(Tum, RefusesWithFileAndLine) {
 
 // A point at range r and azimuth theta is drawn r cos(theta) above the lower edge and r sin(theta) left of the middle,
 // height / range_max pixels a metre.
-TEST(FanView, BrightCellLandsWhereItBelongs) {
+/// 121 beams a degree apart, 1 to 9 m.
+SonarGeometry wide_fan() {
   SonarGeometry g;
   g.range_min_m = 1.0;
   g.range_max_m = 9.0;
   g.range_bins = 160;
   for (int b = 0; b < 121; ++b) g.beam_azimuth_rad.push_back(radians(60.0 - b));
+  return g;
+}
+
+TEST(FanView, BrightCellLandsWhereItBelongs) {
+  const SonarGeometry g = wide_fan();
   const int height = 450;
   const double pixels_per_m = height / 9.0;
   for (const auto& [bin, beam] : {std::pair{100, 60}, std::pair{150, 10}, std::pair{60, 110}, std::pair{20, 60}}) {
@@ -205,11 +211,7 @@ TEST(FanView, BrightCellLandsWhereItBelongs) {
 
 /// A smooth image survives both ways where neighbouring pixels of the fan lie within the fan.
 TEST(FanView, BackToPolarIsTheImageItWasDrawnFrom) {
-  SonarGeometry g;
-  g.range_min_m = 1.0;
-  g.range_max_m = 9.0;
-  g.range_bins = 160;
-  for (int b = 0; b < 121; ++b) g.beam_azimuth_rad.push_back(radians(60.0 - b));
+  const SonarGeometry g = wide_fan();
   Image2<float> image(160, 121);
   for (int k = 0; k < 160; ++k) {
     for (int b = 0; b < 121; ++b) image(k, b) = static_cast<float>(120.0 + 80.0 * std::sin(0.05 * k) * std::cos(0.04 * b));

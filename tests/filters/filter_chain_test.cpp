@@ -111,6 +111,21 @@ TEST(FilterRegistry, EveryParameterCanBeSetToWhatItsListSays) {
   }
 }
 
+/// The paper's order: mask, masked raw image, unsharp; before a map not sharpened twice.
+TEST(FilterChain, LearnedChainsAreThePapersAndAreSharpenedOnce) {
+  for (const char* name : {"learned", "learned_paper"}) {
+    const auto methods = [](const FilterChain& chain) {
+      std::vector<std::string> names;
+      for (const FilterStep& step : chain.steps) names.emplace_back(name_of(step.method));
+      return names;
+    };
+    const FilterChain chain = find_filter(name);
+    EXPECT_EQ(methods(chain), (std::vector<std::string>{"unet", "mask", "unsharp"})) << name;
+    EXPECT_EQ(methods(chain_for_maps(chain, true)), (std::vector<std::string>{"unet", "mask", "unsharp", "equalize"}));
+  }
+  EXPECT_EQ(chain_for_maps(find_filter("lee"), true).steps.size(), 3u);  // lee, unsharp, equalize
+}
+
 /// A step from 50 to 150: both sides of the edge move away from each other by the same.
 TEST(Finishing, UnsharpRaisesEdgesAndKeepsTheScale) {
   GreyImage image{Image2<float>(9, 40, 50.0F), GreyDepth::real};

@@ -131,7 +131,7 @@ MapEvaluationResult evaluate_maps(const Dataset& dataset, const MapEvaluation& w
   report = {dataset.name, dataset.root_hash, what.split, {}, what.tolerances, what.fprs, {}};
   report.thresholds.resize(static_cast<std::size_t>(what.threshold_max) + 1);
   std::iota(report.thresholds.begin(), report.thresholds.end(), 0);
-  const std::vector<std::string> places = places_with_frames(dataset, what.split);
+  const std::vector<std::string> places = what.places.empty() ? places_with_frames(dataset, what.split) : what.places;
   int done = 0;
   for (const std::string& name : places) {
     const JudgedPlace place = judged_place(dataset, name, what);

@@ -17,8 +17,9 @@ struct MapEvaluation {
   int threshold_max = 60;  ///< thresholds 0, 1 .. so far
   std::vector<int> tolerances = {0, 1};
   std::vector<double> fprs = {0.01, 0.05, 0.1};
-  int max_frames = 0;       ///< of a place, evenly spread; 0: all
-  double memory_bytes = 0;  ///< not to be exceeded
+  std::vector<std::string> places;  ///< of them; empty: all
+  int max_frames = 0;               ///< of a place, evenly spread; 0: all
+  double memory_bytes = 0;          ///< not to be exceeded
 };
 
 struct MapEvaluationResult {

@@ -11,6 +11,7 @@ void add_filter(CLI::App& app);
 void add_generate(CLI::App& app);
 void add_map(CLI::App& app);
 void add_ping(CLI::App& app);
+void add_reproduce(CLI::App& app);
 void add_scene(CLI::App& app);
 void add_sonar(CLI::App& app);
 void add_stats(CLI::App& app);

@@ -55,6 +55,7 @@ int run(int argc, char** argv) {
   cli::add_generate(app);
   cli::add_map(app);
   cli::add_ping(app);
+  cli::add_reproduce(app);
   cli::add_scene(app);
   cli::add_sonar(app);
   cli::add_stats(app);

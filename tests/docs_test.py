@@ -107,10 +107,11 @@ class DocsTest(unittest.TestCase):
 
     def test_every_bundled_thing_and_every_option_is_named(self):
         together = "\n".join(d.read_text() for d in documents())
-        for library in ("scenes", "sensor_models", "noise", "filters", "filters/presets", "filters/tuning", "generators"):
+        for library in ("scenes", "sensor_models", "noise", "filters", "filters/presets", "filters/tuning", "generators",
+                        "reproduction"):
             for file in (ROOT / library / "library").glob("*.yaml"):
                 self.assertIn(f"`{file.stem}`", together)
-        for command in ("evaluate filters", "evaluate map", "explore", "filter", "generate", "map", "ping", "stats", "voxelize"):
+        for command in ("evaluate filters", "evaluate map", "explore", "filter", "generate", "map", "ping", "reproduce", "stats", "voxelize"):
             text = subprocess.run([arguments.program, *command.split(), "--help"], capture_output=True, text=True).stdout
             for option in set(re.findall(r"^  (?:-h,)?(--[a-z-]+)", text, re.M)) - {"--help"}:
                 self.assertIn(option, together, command)

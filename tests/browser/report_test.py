@@ -11,6 +11,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 sys.path[:0] = [str(HERE), str(HERE.parent / "cli")]
 import chromium
 from reports import COMMANDS, ReportTest
+from support import ProgramTest
 
 WINDOWS = {"desktop": (1280, 900), "phone": (390, 844)}
 SCHEMES = ("light", "dark")
@@ -45,20 +46,24 @@ WIDE_TABLES = "[...document.querySelectorAll('.scroll')].filter(e => e.scrollWid
 @unittest.skipUnless(chromium.program(), "no chromium here (Debian: chromium)")
 class Pages(ReportTest):
     pictures = None
+    page_file = None  # looked at in place of the pages of a small dataset
 
     def setUp(self):
-        super().setUp()
+        if self.page_file is None:
+            super().setUp()
+        else:
+            ProgramTest.setUp(self)  # needs no pages of its own
         self.browser = chromium.Browser()
         self.addCleanup(self.browser.close)
 
     def views(self):
-        for name in COMMANDS:
+        pages = [self.page_file] if self.page_file else [self.made / "out" / name for name in COMMANDS]
+        for page in pages:
             for window, size in WINDOWS.items():
                 for scheme in SCHEMES:
-                    url = (self.made / "out" / name).as_uri()
-                    events = self.browser.open(url, *size, scheme)
-                    with self.subTest(page=name, window=window, scheme=scheme):
-                        yield name, window, scheme, url, events
+                    events = self.browser.open(page.as_uri(), *size, scheme)
+                    with self.subTest(page=page.name, window=window, scheme=scheme):
+                        yield page.name, window, scheme, page.as_uri(), events
 
     def test_pages(self):
         for name, window, scheme, url, events in self.views():
@@ -108,7 +113,9 @@ if __name__ == "__main__":
     parser = argparse.ArgumentParser()
     parser.add_argument("--program", type=pathlib.Path, required=True)
     parser.add_argument("--pictures", type=pathlib.Path, help="folder for pictures of the pages")
+    parser.add_argument("--report", type=pathlib.Path, help="a page to look at in place of those of a small dataset")
     arguments, rest = parser.parse_known_args()
     ReportTest.program = arguments.program.resolve()
     Pages.pictures = arguments.pictures
+    Pages.page_file = arguments.report
     unittest.main(argv=["browser", *rest], verbosity=2)

@@ -11,7 +11,7 @@ import sys
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 from support import ProgramTest, RECIPE, SCENE, SONAR, files, leftovers, main, manifest
 
-COMMANDS = ["", "evaluate", "evaluate filters", "evaluate map", "explore", "filter", "generate", "map", "ping", "scene",
+COMMANDS = ["", "evaluate", "evaluate filters", "evaluate map", "explore", "filter", "generate", "map", "ping", "reproduce", "scene",
             "scene list", "scene check", "scene show", "scene export", "sonar", "sonar list", "sonar check", "sonar show",
             "stats", "verify", "voxelize"]
 

@@ -83,7 +83,7 @@ class InstallTest(unittest.TestCase):
         installed = {str(f.relative_to(self.prefix / "include/ensonify"))
                      for f in (self.prefix / "include/ensonify").rglob("*") if f.is_file()}
         rooms = ("core", "config", "scenes", "sensor_models", "sim", "noise", "filters", "output", "mapping",
-                 "evaluation", "generators")
+                 "evaluation", "generators", "reproduction")
         expected = {str(f.relative_to(arguments.source)) for room in rooms for f in (arguments.source / room).glob("*.hpp")}
         self.assertEqual(installed, expected)
 

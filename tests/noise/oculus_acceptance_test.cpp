@@ -33,7 +33,7 @@ double share(const SonarImage& image, int low, int high) {
 
 /// Figures by name, a value a seed.
 std::map<std::string, std::vector<double>> figures_of_all_seeds() {
-  const Scene scene = load_scene((source_folder() / "docs/validation/rough_tank.yaml").string());
+  const Scene scene = load_scene((source_folder() / "reproduction/library/rough_tank.yaml").string());
   const RayScene rays(scene);
   const SonarModel sonar = load_sonar("oculus_m1200d_hf_256");
   const Receiver receiver(sonar);

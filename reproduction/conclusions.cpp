@@ -135,7 +135,8 @@ Conclusion fine_tuning(const Findings& found) {
   const FilterScores *tuned = tank_row(found, "transfer"), *scratch = tank_row(found, "tank_100"),
                      *before = tank_row(found, "paper_small");
   if (!tuned || !scratch || !before) return c;
-  c.verdict = tuned->iou.value > before->iou.value ? Verdict::does_not_hold : Verdict::holds;
+  const bool helps = tuned->iou.value > before->iou.value, pays = tuned->iou.value > scratch->iou.value;
+  c.verdict = pays && helps ? Verdict::does_not_hold : helps ? Verdict::changes : Verdict::holds;
   c.measured = fmt::format("IoU before {}, after {}; from the 100 pairs alone, in four times as many steps, {}.",
                            with_interval(before->iou), with_interval(tuned->iou), with_interval(scratch->iou));
   return c;

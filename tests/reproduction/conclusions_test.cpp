@@ -125,7 +125,12 @@ TEST(Conclusions, PairsFineTuningAndTimes) {
     found.tank_masks->rows.push_back(scores);
   }
   EXPECT_EQ(about(found, "training pairs").verdict, Verdict::changes);
+  // It fails where it is no better than before, and is as good as none where training from nothing gives more.
   EXPECT_EQ(about(found, "Fine-tuning").verdict, Verdict::does_not_hold);
+  found.tank_masks->rows.back().iou.value = 0.5;
+  EXPECT_EQ(about(found, "Fine-tuning").verdict, Verdict::changes);
+  found.tank_masks->rows.back().iou.value = 0.05;
+  EXPECT_EQ(about(found, "Fine-tuning").verdict, Verdict::holds);
   found.times.filters = {{"anisodiff", 1}, {"frost", 5},           {"wavelet", 2},
                          {"learned", 3},   {"learned_clean", 0.1}, {"lee_enhanced", 4}};
   EXPECT_EQ(about(found, "By time").verdict, Verdict::holds);

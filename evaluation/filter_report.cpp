@@ -7,6 +7,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
+#include "ensonify/evaluation/csv_field.hpp"
+
 namespace ensonify {
 namespace {
 
@@ -64,7 +66,8 @@ std::string scores_csv(const FilterReport& report) {
   for (const Column& c : columns) text += fmt::format(",{0},{0}_low,{0}_high", c.name);
   text += "\n";
   for (const FilterScores& row : report.rows) {
-    text += fmt::format("{},{},{},{},{}", row.filter, row.preset, row.scene, row.psnr_db.frames, row.t);
+    text += fmt::format("{},{},{},{},{}", csv_field(row.filter), csv_field(row.preset), csv_field(row.scene),
+                        row.psnr_db.frames, row.t);
     for (const Column& c : columns) {
       const Estimate& e = row.*c.estimate;
       text += fmt::format(",{},{},{}", number(e.value), number(e.low), number(e.high));
@@ -77,7 +80,8 @@ std::string scores_csv(const FilterReport& report) {
 std::string times_csv(const FilterReport& report) {
   std::string text = "filter,preset,scene,median_ms\n";
   for (const FilterScores& row : report.rows) {
-    text += fmt::format("{},{},{},{:.3f}\n", row.filter, row.preset, row.scene, row.time_ms);
+    text += fmt::format("{},{},{},{:.3f}\n", csv_field(row.filter), csv_field(row.preset), csv_field(row.scene),
+                        row.time_ms);
   }
   return text;
 }

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <tuple>
 
+#include "ensonify/evaluation/csv_field.hpp"
 #include "ensonify/evaluation/map_summary.hpp"
 
 namespace ensonify {
@@ -63,7 +64,9 @@ constexpr std::array raw_counts{RawCount{"tp", &MapCounts::true_free},
 std::string number(double value) { return std::isfinite(value) ? fmt::format("{:.6g}", value) : ""; }
 json value_of(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
 
-std::string names_of(const MapCurve& c) { return fmt::format("{},{},{},{}", c.scene, c.filter, c.model, c.poses); }
+std::string names_of(const MapCurve& c) {
+  return fmt::format("{},{},{},{}", csv_field(c.scene), csv_field(c.filter), c.model, c.poses);
+}
 
 json json_of(const MapReport& report, const MapCurve& curve) {
   json entry{{"scene", curve.scene},

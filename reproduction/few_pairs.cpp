@@ -23,7 +23,7 @@ constexpr std::array known{Known{"paper_small", "paper noise only", 0},
                            Known{"tank_300", "300 pairs", 300},
                            Known{"tank_1000", "1000 pairs", 1000},
                            Known{"tank_3000", "3000 pairs", 3000},
-                           Known{"transfer", "paper noise, then 100 pairs", 100}};
+                           Known{"transfer", "paper noise and 100 pairs", 100}};
 
 FilterChain unet_of(const FewPairsModel& model, const char* output) {
   FilterStep step = make_filter("unet");

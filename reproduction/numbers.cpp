@@ -51,6 +51,7 @@ void write_numbers(const Findings& findings, const std::filesystem::path& folder
   write_filters(folder, "filters", findings.filters);
   write_filters(folder, "tank_filters", findings.tank_masks);
   write_filters(folder, "realistic_filters", findings.ghosts);
+  write_maps(folder, "maps_as_the_paper", findings.maps_as_the_paper);
   write_maps(folder, "maps", findings.maps);
   write_maps(folder, "tank_maps", findings.tank_maps);
   write_file(folder / "closed_loop.csv", loops_csv(findings.loops));

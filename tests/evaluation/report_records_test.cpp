@@ -60,6 +60,18 @@ TEST(ReportRecords, MapReportsComeBackToTheBit) {
   EXPECT_EQ(back.curves.at(0).at.at(0).tolerant.at(1).false_occupied, 8U);
 }
 
+TEST(ReportRecords, NamesOfChainsAreFree) {
+  FilterReport report = filter_report();
+  report.rows[0].filter = "a, \"b\"";
+  EXPECT_NE(scores_csv(report).find("\n\"a, \"\"b\"\"\",paper,all,40,17,"), std::string::npos) << scores_csv(report);
+  EXPECT_NE(times_csv(report).find("\n\"a, \"\"b\"\"\",paper,all,"), std::string::npos);
+  MapReport maps = map_report();
+  maps.curves[0].at.resize(1);
+  maps.curves[0].filter = "a,b";
+  EXPECT_NE(map_scores_csv(maps).find("\ndam,\"a,b\",points,true,0,"), std::string::npos);
+  EXPECT_NE(map_summary_csv(maps).find("\ndam,\"a,b\",points,true,10,"), std::string::npos);
+}
+
 TEST(ReportRecords, WhatIsNoneIsRefusedByName) {
   const std::string whole = record_of(filter_report());
   for (const std::string& text : {std::string(), whole.substr(0, whole.size() / 2), std::string("[]"),

@@ -34,6 +34,14 @@ std::vector<std::string> presets_of(const FilterReport& report) {
   return presets;
 }
 
+std::vector<std::string> scenes_of(const FilterReport& report) {
+  std::vector<std::string> scenes;
+  for (const FilterScores& row : report.rows) {
+    if (row.scene != "all" && std::ranges::find(scenes, row.scene) == scenes.end()) scenes.push_back(row.scene);
+  }
+  return scenes;
+}
+
 ReportTable score_table(const FilterReport& report, const std::string& scene) {
   ReportTable table{scene == "all" ? "Scores over all scenes" : fmt::format("Scores in {}", scene),
                     {"filter", "preset", "t"},

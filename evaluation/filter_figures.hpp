@@ -18,6 +18,9 @@ struct ShownScore {
 /// "" stands for what has no preset: references and chains.
 std::vector<std::string> presets_of(const FilterReport& report);
 
+/// Without "all", in the order of the report.
+std::vector<std::string> scenes_of(const FilterReport& report);
+
 /// Of one scene ("all": every one), a line a filter and preset.
 ReportTable score_table(const FilterReport& report, const std::string& scene);
 

@@ -14,14 +14,6 @@ bool has_ghosts(const FilterReport& report) {
   return std::ranges::any_of(report.rows, [](const auto& row) { return std::isfinite(row.ghosts_removed.value); });
 }
 
-std::vector<std::string> scenes_of(const FilterReport& report) {
-  std::vector<std::string> scenes;
-  for (const FilterScores& row : report.rows) {
-    if (row.scene != "all" && std::ranges::find(scenes, row.scene) == scenes.end()) scenes.push_back(row.scene);
-  }
-  return scenes;
-}
-
 ReportTable times_table(const FilterReport& report) {
   ReportTable table{"Median time of a frame [ms], on one core", {"filter", "preset"}, {}, 2, true};
   const std::vector<std::string> scenes = scenes_of(report);

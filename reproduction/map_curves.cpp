@@ -30,14 +30,6 @@ std::size_t best_balanced(const MapCurve& curve) {
 
 double best_balanced_accuracy(const MapCurve& curve) { return curve.at.at(best_balanced(curve)).balanced_accuracy(); }
 
-std::vector<std::string> scenes_of(const FilterReport& report) {
-  std::vector<std::string> scenes;
-  for (const FilterScores& row : report.rows) {
-    if (row.scene != "all" && std::ranges::find(scenes, row.scene) == scenes.end()) scenes.push_back(row.scene);
-  }
-  return scenes;
-}
-
 std::string ranges_of(const std::vector<int>& numbers) {
   std::vector<std::string> words;
   for (std::size_t i = 0; i < numbers.size();) {

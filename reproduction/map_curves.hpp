@@ -3,7 +3,6 @@
 #include <string>
 #include <vector>
 
-#include "ensonify/evaluation/filter_report.hpp"
 #include "ensonify/evaluation/map_report.hpp"
 
 namespace ensonify {
@@ -15,9 +14,6 @@ const MapCurve* curve_of(const MapReport& report, const std::string& scene, cons
 /// The threshold with the greatest balanced accuracy, as an index; the lowest of equals.
 std::size_t best_balanced(const MapCurve& curve);
 double best_balanced_accuracy(const MapCurve& curve);
-
-/// Scenes of a report, without "all", in its order.
-std::vector<std::string> scenes_of(const FilterReport& report);
 
 /// "0 to 4, 7, 9 to 12" of ascending numbers.
 std::string ranges_of(const std::vector<int>& numbers);

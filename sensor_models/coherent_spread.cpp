@@ -3,6 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstring>
+
+#ifdef __FMA__
+#include <immintrin.h>
+#endif
 
 #include "ensonify/sensor_models/point_spread.hpp"
 
@@ -58,21 +63,6 @@ std::vector<float> pulse_amplitudes(const SonarModel& sonar) {
   return pulse;
 }
 
-/// Rows smeared along range, with `reach` zeros on either side.
-Image2<float> spread_range(const Image2<float>& in, const std::vector<float>& taps, int reach) {
-  const int range_reach = static_cast<int>(taps.size()) / 2;
-  Image2<float> result(in.rows(), in.columns() + 2 * reach);
-  for (int bin = 0; bin < in.rows(); ++bin) {
-    float* __restrict line = result.row(bin).data() + reach;
-    for (int k = std::max(-range_reach, -bin); k <= std::min(range_reach, in.rows() - 1 - bin); ++k) {
-      const float* __restrict row = in.row(bin + k).data();
-      const float weight = taps[static_cast<std::size_t>(k + range_reach)];
-      for (int b = 0; b < in.columns(); ++b) line[b] += weight * row[b];
-    }
-  }
-  return result;
-}
-
 /// Part of the diagonals, from `first` up to `end`.
 struct Diagonals {
   int first, end;
@@ -90,32 +80,98 @@ std::vector<Diagonals> runs_of_diagonals(const Image2<float>& band, int beam, in
   return runs;
 }
 
-/// Range taps, then the band matrix: a few beams of all rows at a time, so that their weights stay at hand and their
-/// sums in registers.
-Image2<float> spread(const Image2<float>& in, const std::vector<float>& taps, const Image2<float>& band) {
-  constexpr int chunk = 32;
-  const int beams = in.columns();
-  const int diagonals = band.rows();
-  const Image2<float> padded = spread_range(in, taps, diagonals / 2);
-  Image2<float> result(in.rows(), beams);
-  int b = 0;
-  for (; b + chunk <= beams; b += chunk) {
-    const std::vector<Diagonals> runs = runs_of_diagonals(band, b, chunk);
-    for (int bin = 0; bin < in.rows(); ++bin) {
-      const float* __restrict line = padded.row(bin).data() + b;
-      std::array<float, chunk> sum{};
-      for (const auto [first, end] : runs) {
-        for (int d = first; d < end; ++d) {
-          const float* __restrict weight = band.row(d).data() + b;
-          for (int i = 0; i < chunk; ++i) sum[i] += weight[i] * line[d + i];
-        }
+constexpr int lanes = 8;
+using Lanes = float __attribute__((vector_size(lanes * sizeof(float))));
+constexpr int chunk = 4 * lanes;  ///< beams whose sums stay in registers
+
+Lanes lanes_of(const float* values) {
+  Lanes out;
+  std::memcpy(&out, values, sizeof(out));
+  return out;
+}
+
+void store(Lanes values, float* to) { std::memcpy(to, &values, sizeof(values)); }
+
+/// a b + c, rounded once on any processor.
+Lanes fused(Lanes a, Lanes b, Lanes c) {
+#ifdef __FMA__
+  // The compiler makes no vector code of std::fma here.
+  return reinterpret_cast<Lanes>(
+      _mm256_fmadd_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b), reinterpret_cast<__m256>(c)));
+#else
+  for (int l = 0; l < lanes; ++l) c[l] = std::fma(a[l], b[l], c[l]);
+  return c;
+#endif
+}
+
+/// The sums of `chunk` beams from `beam` on, in two rows that share the weights.
+void sum_diagonals(const Image2<float>& band, const std::vector<Diagonals>& runs, int beam, const float* line0,
+                   const float* line1, float* out0, float* out1) {
+  std::array<Lanes, chunk / lanes> sum0{}, sum1{};
+  for (const Diagonals& run : runs) {
+    for (int d = run.first; d < run.end; ++d) {
+      const float* w = band.row(d).data() + beam;
+      const float* x0 = line0 + beam + d;
+      const float* x1 = line1 + beam + d;
+
+      for (int v = 0; v < chunk / lanes; ++v) {
+        const Lanes weight = lanes_of(w + v * lanes);
+        sum0[v] = fused(weight, lanes_of(x0 + v * lanes), sum0[v]);
+        sum1[v] = fused(weight, lanes_of(x1 + v * lanes), sum1[v]);
       }
-      std::copy(sum.begin(), sum.end(), result.row(bin).data() + b);
     }
   }
-  for (int bin = 0; bin < in.rows(); ++bin) {
-    for (int rest = b; rest < beams; ++rest) {
-      for (int d = 0; d < diagonals; ++d) result(bin, rest) += band(d, rest) * padded(bin, rest + d);
+
+  for (int v = 0; v < chunk / lanes; ++v) {
+    store(sum0[v], out0 + beam + v * lanes);
+    store(sum1[v], out1 + beam + v * lanes);
+  }
+}
+
+/// The sum of one beam.
+float sum_diagonals(const Image2<float>& band, int beam, const float* line) {
+  float sum = 0.0f;
+  for (int d = 0; d < band.rows(); ++d) sum = std::fma(band(d, beam), line[beam + d], sum);
+  return sum;
+}
+
+/// A row smeared along range.
+void spread_range(const Image2<float>& in, const std::vector<float>& taps, int bin, float* __restrict line) {
+  const int reach = static_cast<int>(taps.size()) / 2;
+  std::fill(line, line + in.columns(), 0.0f);
+  for (int k = std::max(-reach, -bin); k <= std::min(reach, in.rows() - 1 - bin); ++k) {
+    const float* __restrict row = in.row(bin + k).data();
+    const float weight = taps[static_cast<std::size_t>(k + reach)];
+    for (int b = 0; b < in.columns(); ++b) line[b] += weight * row[b];
+  }
+}
+
+/// Range taps, then the band matrix, a few rows at a time, so that they stay at hand.
+Image2<float> spread(const Image2<float>& in, const std::vector<float>& taps, const Image2<float>& band) {
+  constexpr int together = 8;
+  const int beams = in.columns();
+  const int reach = band.rows() / 2;
+  std::vector<std::vector<Diagonals>> runs;
+  for (int b = 0; b + chunk <= beams; b += chunk) runs.push_back(runs_of_diagonals(band, b, chunk));
+  const int in_chunks = chunk * static_cast<int>(runs.size());
+  Image2<float> lines(together, beams + 2 * reach);  // zeros on either side
+  std::vector<float> no_row(static_cast<std::size_t>(beams));
+  Image2<float> result(in.rows(), beams);
+  for (int first = 0; first < in.rows(); first += together) {
+    const int rows = std::min(together, in.rows() - first);
+    for (int r = 0; r < rows; ++r) spread_range(in, taps, first + r, lines.row(r).data() + reach);
+    for (int r = 0; r < rows; r += 2) {
+      const float* line0 = lines.row(r).data();
+      const float* line1 = lines.row(r + 1).data();
+      float* out0 = result.row(first + r).data();
+      float* out1 = r + 1 < rows ? result.row(first + r + 1).data() : no_row.data();
+      for (int b = 0; b < in_chunks; b += chunk) {
+        sum_diagonals(band, runs[static_cast<std::size_t>(b / chunk)], b, line0, line1, out0, out1);
+      }
+      for (int b = in_chunks; b < beams; ++b) {
+        out0[b] = sum_diagonals(band, b, line0);
+        out1[b] = sum_diagonals(band, b, line1);
+      }
     }
   }
   return result;

@@ -1,10 +1,11 @@
 // A lone scatterer through array and pulse: |field|^2 is the point spread.
+#include "ensonify/sensor_models/coherent_spread.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
 #include "ensonify/sensor_models/beam_table.hpp"
-#include "ensonify/sensor_models/coherent_spread.hpp"
 #include "ensonify/sensor_models/point_spread.hpp"
 #include "support/pings.hpp"
 
@@ -29,7 +30,8 @@ Image2<float> point_through(const SonarModel& sonar) {
   const ComplexField seen = CoherentSpread(sonar).apply(field);
   Image2<float> power(201, beams);
   for (std::size_t i = 0; i < power.size(); ++i) {
-    power.pixels()[i] = seen.real.pixels()[i] * seen.real.pixels()[i] + seen.imaginary.pixels()[i] * seen.imaginary.pixels()[i];
+    power.pixels()[i] =
+        seen.real.pixels()[i] * seen.real.pixels()[i] + seen.imaginary.pixels()[i] * seen.imaginary.pixels()[i];
   }
   return power;
 }
@@ -41,7 +43,8 @@ double half_width(const std::vector<double>& x) {
     std::size_t i = peak;
     while (x[i] > 0.5 * x[peak]) i += static_cast<std::size_t>(step);
     const std::size_t inner = i - static_cast<std::size_t>(step);
-    return std::abs(static_cast<double>(inner) - static_cast<double>(peak)) + (x[inner] - 0.5 * x[peak]) / (x[inner] - x[i]);
+    return std::abs(static_cast<double>(inner) - static_cast<double>(peak)) +
+           (x[inner] - 0.5 * x[peak]) / (x[inner] - x[i]);
   };
   return crossing(1) + crossing(-1);
 }
@@ -59,7 +62,8 @@ TEST(CoherentSpread, BeamWidthAndFirstSidelobe) {
     double sidelobe = 0;
     for (int b = 0; b < beams; ++b) {
       const double sine = std::abs(std::sin(sonar.geometry.beam_azimuth_rad[static_cast<std::size_t>(b)]));
-      if (sine > sonar.receive_azimuth.main_lobe_sine()) sidelobe = std::max(sidelobe, across[static_cast<std::size_t>(b)]);
+      if (sine > sonar.receive_azimuth.main_lobe_sine())
+        sidelobe = std::max(sidelobe, across[static_cast<std::size_t>(b)]);
     }
     EXPECT_NEAR(10.0 * std::log10(sidelobe / across[beams / 2]), sidelobe_db, 0.3);
   }
@@ -102,6 +106,22 @@ TEST(CoherentSpread, SidelobePowerIsTheRest) {
     if (sidelobe.pixels()[i] > 0.0F) {
       ASSERT_EQ(clean.pixels()[i], 0.0F);
     }
+  }
+}
+
+// The fan is its own mirror image: what a beam sees of a scatterer, its mirror image sees of the mirrored one, also
+// where beams and bins are not whole vectors (the last of 513, of 201).
+TEST(CoherentSpread, EdgesOfTheImageSeeWhatItsMiddleSees) {
+  const CoherentSpread spread(instrument(Shading::hann));
+  const auto seen_of = [&](int bin, int beam) {
+    ComplexField field(201, beams);
+    field.real(bin, beam) = 1.0F;
+    return spread.apply(field).real;
+  };
+  for (const int beam : {0, 5, beams / 2}) {
+    const Image2<float> one = seen_of(100, beam);
+    const Image2<float> mirrored = seen_of(200, beams - 1 - beam);
+    for (int b = 0; b < beams; ++b) EXPECT_NEAR(one(100, b), mirrored(200, beams - 1 - b), 1e-5F) << beam << " " << b;
   }
 }
 

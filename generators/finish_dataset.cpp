@@ -1,6 +1,7 @@
 #include "ensonify/generators/finish_dataset.hpp"
 
 #include <fmt/format.h>
+#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -178,8 +179,10 @@ bool finish_dataset(const FrameMaker& maker, const DatasetPaths& paths, const st
 
   Sha256 root;
   std::vector<std::filesystem::path> files;  // beside those of the blocks
-  json shards = write_metadata(maker, paths, blocks, root, files);
-  const std::vector<std::vector<bool>> seen = observed_of_places(maker, paths, blocks);
+  json shards;
+  std::vector<std::vector<bool>> seen;
+  tbb::parallel_invoke([&] { shards = write_metadata(maker, paths, blocks, root, files); },
+                       [&] { seen = observed_of_places(maker, paths, blocks); });
   std::vector<std::string> hashes(maker.places().size());
   parallel_for(places, [&](int place) {
     if (options.stopped()) return;

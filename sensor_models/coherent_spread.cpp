@@ -113,7 +113,6 @@ void sum_diagonals(const Image2<float>& band, const std::vector<Diagonals>& runs
       const float* w = band.row(d).data() + beam;
       const float* x0 = line0 + beam + d;
       const float* x1 = line1 + beam + d;
-
       for (int v = 0; v < chunk / lanes; ++v) {
         const Lanes weight = lanes_of(w + v * lanes);
         sum0[v] = fused(weight, lanes_of(x0 + v * lanes), sum0[v]);
@@ -121,7 +120,6 @@ void sum_diagonals(const Image2<float>& band, const std::vector<Diagonals>& runs
       }
     }
   }
-
   for (int v = 0; v < chunk / lanes; ++v) {
     store(sum0[v], out0 + beam + v * lanes);
     store(sum1[v], out1 + beam + v * lanes);

@@ -3,12 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstring>
 
-#ifdef __FMA__
-#include <immintrin.h>
-#endif
-
+#include "ensonify/core/lanes.hpp"
 #include "ensonify/sensor_models/point_spread.hpp"
 
 namespace ensonify {
@@ -80,49 +76,28 @@ std::vector<Diagonals> runs_of_diagonals(const Image2<float>& band, int beam, in
   return runs;
 }
 
-constexpr int lanes = 8;
-using Lanes = float __attribute__((vector_size(lanes * sizeof(float))));
-constexpr int chunk = 4 * lanes;  ///< beams whose sums stay in registers
-
-Lanes lanes_of(const float* values) {
-  Lanes out;
-  std::memcpy(&out, values, sizeof(out));
-  return out;
-}
-
-void store(Lanes values, float* to) { std::memcpy(to, &values, sizeof(values)); }
-
-/// a b + c, rounded once on any processor.
-Lanes fused(Lanes a, Lanes b, Lanes c) {
-#ifdef __FMA__
-  // The compiler makes no vector code of std::fma here.
-  return reinterpret_cast<Lanes>(
-      _mm256_fmadd_ps(reinterpret_cast<__m256>(a), reinterpret_cast<__m256>(b), reinterpret_cast<__m256>(c)));
-#else
-  for (int l = 0; l < lanes; ++l) c[l] = std::fma(a[l], b[l], c[l]);
-  return c;
-#endif
-}
+constexpr int vectors = 4;
+constexpr int chunk = vectors * lane_count;  ///< beams whose sums stay in registers
 
 /// The sums of `chunk` beams from `beam` on, in two rows that share the weights.
 void sum_diagonals(const Image2<float>& band, const std::vector<Diagonals>& runs, int beam, const float* line0,
                    const float* line1, float* out0, float* out1) {
-  std::array<Lanes, chunk / lanes> sum0{}, sum1{};
+  std::array<Lanes, vectors> sum0{}, sum1{};
   for (const Diagonals& run : runs) {
     for (int d = run.first; d < run.end; ++d) {
       const float* w = band.row(d).data() + beam;
       const float* x0 = line0 + beam + d;
       const float* x1 = line1 + beam + d;
-      for (int v = 0; v < chunk / lanes; ++v) {
-        const Lanes weight = lanes_of(w + v * lanes);
-        sum0[v] = fused(weight, lanes_of(x0 + v * lanes), sum0[v]);
-        sum1[v] = fused(weight, lanes_of(x1 + v * lanes), sum1[v]);
+      for (int v = 0; v < vectors; ++v) {
+        const Lanes weight = lanes_of(w + v * lane_count);
+        sum0[v] = fused(weight, lanes_of(x0 + v * lane_count), sum0[v]);
+        sum1[v] = fused(weight, lanes_of(x1 + v * lane_count), sum1[v]);
       }
     }
   }
-  for (int v = 0; v < chunk / lanes; ++v) {
-    store(sum0[v], out0 + beam + v * lanes);
-    store(sum1[v], out1 + beam + v * lanes);
+  for (int v = 0; v < vectors; ++v) {
+    store(sum0[v], out0 + beam + v * lane_count);
+    store(sum1[v], out1 + beam + v * lane_count);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <vector>
 
+#include "ensonify/core/lanes.hpp"
 #include "ensonify/sim/path_pair.hpp"
 
 namespace ensonify {
@@ -38,13 +39,7 @@ struct Group {
   float weight;  ///< 1 over the chance of being asked for
 };
 
-using Lanes = float __attribute__((vector_size(packet_lanes * sizeof(float))));
-
-Lanes lanes_of(const float* values) {
-  Lanes lanes;
-  std::memcpy(&lanes, values, sizeof(lanes));
-  return lanes;
-}
+static_assert(packet_lanes == lane_count);
 
 /// Whether any of a packet and a place face each other: three quarters do not, so this is asked most. In vectors by
 /// hand: left to itself, the compiler unrolls so short a loop before it looks for vectors.

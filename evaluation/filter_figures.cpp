@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 
+#include "ensonify/evaluation/estimate_series.hpp"
+
 namespace ensonify {
 namespace {
 
@@ -85,10 +87,7 @@ ReportFigure score_figure(const FilterReport& report, const ShownScore& score, s
         row.preset.empty() ? 0 : step * (static_cast<double>(place_of(row.preset)) - 0.5 * (named - 1));
     const Estimate& e = row.*score.estimate;
     Series& series = plot.series[preset];
-    series.x.push_back(static_cast<double>(at) + aside);
-    series.y.push_back(e.value);
-    series.y_low.push_back(e.low);
-    series.y_high.push_back(e.high);
+    add_estimate(series, static_cast<double>(at) + aside, e);
     table.rows.push_back({row.filter, row.preset, fixed(e.value, score.digits), fixed(e.low, score.digits),
                           fixed(e.high, score.digits)});
   }

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "ensonify/evaluation/csv_field.hpp"
+#include "ensonify/evaluation/estimate_series.hpp"
 
 namespace ensonify {
 namespace {
@@ -42,10 +43,7 @@ Plot bars(const FilterReport& report, const char* title, const char* unit, Estim
   Series series{"", {}, {}, Series::Style::bars_with_errors};
   for (const FilterScores& row : report.rows) {
     if (row.scene != "all") continue;
-    series.x.push_back(static_cast<double>(plot.categories.size()));
-    series.y.push_back((row.*estimate).value);
-    series.y_low.push_back((row.*estimate).low);
-    series.y_high.push_back((row.*estimate).high);
+    add_estimate(series, static_cast<double>(plot.categories.size()), row.*estimate);
     plot.categories.push_back(label(row));
   }
   double most = 0;

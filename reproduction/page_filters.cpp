@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ensonify/evaluation/estimate_series.hpp"
 #include "ensonify/evaluation/filter_figures.hpp"
 #include "ensonify/reproduction/map_curves.hpp"
 #include "ensonify/reproduction/page.hpp"
@@ -21,10 +22,7 @@ ReportFigure psnr_figure(const Findings& found, const std::string& scene) {
     const FilterScores* row = row_of(report, contender, scene);
     if (!row) continue;
     const Estimate& e = row->*contender.psnr_db;
-    bars.x.push_back(static_cast<double>(plot.categories.size()));
-    bars.y.push_back(e.value);
-    bars.y_low.push_back(e.low);
-    bars.y_high.push_back(e.high);
+    add_estimate(bars, static_cast<double>(plot.categories.size()), e);
     plot.categories.push_back(contender.label);
     table.rows.push_back(
         {contender.label, fixed(e.value, 2), fixed(e.low, 2), fixed(e.high, 2), std::to_string(e.frames)});

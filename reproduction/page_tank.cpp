@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ensonify/evaluation/estimate_series.hpp"
 #include "ensonify/evaluation/filter_figures.hpp"
 #include "ensonify/reproduction/map_curves.hpp"
 #include "ensonify/reproduction/page.hpp"
@@ -51,10 +52,7 @@ ReportFigure over_pairs(const Findings& found) {
   for (const FewPairsModel& model : found.few_pairs) {
     const FilterScores* row = row_of_model(*found.tank_masks, model.name);
     if (!row) continue;
-    bars.x.push_back(static_cast<double>(plot.categories.size()));
-    bars.y.push_back(row->iou.value);
-    bars.y_low.push_back(row->iou.low);
-    bars.y_high.push_back(row->iou.high);
+    add_estimate(bars, static_cast<double>(plot.categories.size()), row->iou);
     plot.categories.push_back(model.name);
     table.rows.push_back({model.label, std::to_string(model.pairs), fixed(row->iou.value, 3), fixed(row->iou.low, 3),
                           fixed(row->iou.high, 3)});

@@ -77,8 +77,10 @@ TraceOptions trace_options(const NoiseChain& noise, bool cell_truth) {
   TraceOptions options;
   options.cell_truth = cell_truth;
   options.elevation = noise.find<CoherentSpeckle>() != nullptr || noise.find<Texture>() != nullptr;
-  if (const auto* multipath = noise.find<Multipath>())
+  if (const auto* multipath = noise.find<Multipath>()) {
     options.multipath_order = static_cast<int>(std::lround(multipath->order));
+    options.multipath_samples = multipath->samples;
+  }
   return options;
 }
 

@@ -26,15 +26,17 @@ struct Parameter {
   std::optional<double> otherwise = {};  ///< where the profile is silent; none: required
 };
 
-/// Adds the multipath layer, at `level_db` over what was traced. `order`: most surfaces that a path meets.
+/// Adds the multipath layer, at `level_db` over what was traced. `order`: most surfaces that a path meets. `samples`:
+/// pairs of places tried, over the usual.
 template <typename Value>
 struct Multipath {
   static constexpr const char* kind = "multipath";
   static constexpr NoiseDomain domain = NoiseDomain::echo;
-  Value level_db, order;
+  Value level_db, order, samples;
   static constexpr auto parameters() {
     return std::array{Parameter<Multipath, Value>{"level_db", &Multipath::level_db, {-60, 20}, 0.0},
-                      Parameter<Multipath, Value>{"order", &Multipath::order, {2, 3}, 2.0}};
+                      Parameter<Multipath, Value>{"order", &Multipath::order, {2, 3}, 2.0},
+                      Parameter<Multipath, Value>{"samples", &Multipath::samples, {0.1, 64}, 1.0}};
   }
 };
 

@@ -19,21 +19,19 @@ namespace ensonify {
 /// surfaces is only found by walks, with more noise.
 class MultipathTracer {
  public:
-  /// The scene must outlive the tracer. `density`: 1, or n for about n times the pairs and rays, for a reference.
-  MultipathTracer(const RayScene& scene, const SonarModel& sonar, const Water& water, int density = 1);
+  /// The scene must outlive the tracer.
+  MultipathTracer(const RayScene& scene, const SonarModel& sonar, const Water& water);
   /// With the sonar's fan at hand.
-  MultipathTracer(const RayScene& scene, const SonarModel& sonar, const RayFan& fan, const Water& water,
-                  int density = 1);
+  MultipathTracer(const RayScene& scene, const SonarModel& sonar, const RayFan& fan, const Water& water);
 
-  /// Bins x beams. `order`: 2 or 3.
-  Image2<float> trace(const Pose& T_world_sonar, int order) const;
+  /// Bins x beams. `order`: 2 or 3. `samples`: pairs of places that are tried, over the usual; rays grow as its square
+  /// root. Throws ConfigError for others.
+  Image2<float> trace(const Pose& T_world_sonar, int order, double samples = 1.0) const;
 
  private:
   const RayScene* scene_;
   SonarGeometry geometry_;
   PathFan fan_;
-  PathTiles::Grid grid_;
-  int tiles_;
   std::vector<float> row_loss_;  ///< absorption of every bin
 };
 

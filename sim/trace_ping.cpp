@@ -74,7 +74,8 @@ Ping PingTracer::trace(const Pose& T_world_sonar, const TraceOptions& options) c
   const RayAxes axes{T_world_sonar.translation().cast<float>(), R.col(0), R.col(1), R.col(2)};
 
   Ping ping{{Image2<float>(bins.count, beams), {}, {}}, empty_truth()};
-  if (options.multipath_order > 1) ping.echo.multipath = multipath_.trace(T_world_sonar, options.multipath_order);
+  if (options.multipath_order > 1)
+    ping.echo.multipath = multipath_.trace(T_world_sonar, options.multipath_order, options.multipath_samples);
   if (options.elevation) ping.echo.elevation_rad = Image2<float>(bins.count, beams);
   std::optional<CellTruth> cells;
   if (options.cell_truth) cells.emplace(bins.count, beams, ping.truth);

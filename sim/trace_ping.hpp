@@ -19,6 +19,7 @@ struct TraceOptions {
   bool elevation = false;   ///< Echo::elevation_rad, which coherent speckle needs
   Twist motion{};           ///< while the sound is under way; truth stays that of the moment of the pulse
   int multipath_order = 0;  ///< Echo::multipath: surfaces that a path may meet, 2 or 3; 0: none
+  double multipath_samples = 1.0;  ///< of multipath, over the usual: more for less noise
 };
 
 /// Casts one ping: mean echo intensity of the direct path, before the point spread, and the truth of the same rays.

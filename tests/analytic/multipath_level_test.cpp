@@ -16,9 +16,9 @@ using namespace test;
 
 SonarModel wide_sonar() { return bare_sonar({.beams = 200, .azimuth_fov_deg = 60.0, .bins = 400}); }
 
-Image2<float> multipath_of(const Scene& scene, const SonarModel& sonar, int order = 2, int density = 1) {
+Image2<float> multipath_of(const Scene& scene, const SonarModel& sonar, int order = 2, double samples = 1.0) {
   const RayScene rays(scene);
-  return MultipathTracer(rays, sonar, scene.water, density).trace(Pose::Identity(), order);
+  return MultipathTracer(rays, sonar, scene.water).trace(Pose::Identity(), order, samples);
 }
 
 // Inside a Lambert sphere of radius R around the sonar. What falls on a wall element from any other is the same

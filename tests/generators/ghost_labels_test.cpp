@@ -49,7 +49,7 @@ std::vector<Vec3> box_points() {
 PingImages ping_in(const Scene& scene, const SonarModel& sonar, const Pose& T_world_sonar) {
   const RayScene rays(scene);
   ImageSettings settings;
-  settings.noise = {"test", {Multipath<double>{0, 2}, CoherentSpeckle<double>{}, ReceiverNoise<double>{-24, -63}}};
+  settings.noise = {"test", {Multipath<double>{0, 2, 1}, CoherentSpeckle<double>{}, ReceiverNoise<double>{-24, -63}}};
   const Ping ping = PingTracer(rays, sonar, scene.water).trace(T_world_sonar, trace_options(settings.noise, false));
   return form_images(Receiver(sonar), ping, settings, {.T_world_sonar = T_world_sonar});
 }

@@ -170,7 +170,7 @@ TEST(RangeJitter, MovesEnergyAway) {
 TEST(Multipath, EntersAtItsLevel) {
   Echo echo = silence();
   echo.multipath = Image2<float>(bins, beams, 1e-7F);
-  const auto with = received({Multipath<double>{-6, 2}}, echo);
+  const auto with = received({Multipath<double>{-6, 2, 1}}, echo);
   EXPECT_NEAR(db(static_cast<double>(with.layers.multipath(9, 9)) / 1e-7), -6.0, 1e-3);
   EXPECT_GT(sum_of(with.power), 0.0);
   EXPECT_EQ(sum_of(received({RayleighSpeckle<double>{}}, echo).power), 0.0);  // without the stage it is not there

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <string>
 
+#include "ensonify/core/error.hpp"
 #include "ensonify/core/parallel.hpp"
 #include "support/image_source.hpp"
 #include "support/meshes.hpp"
@@ -92,9 +93,9 @@ struct Errors {
 };
 
 /// One ping against 64 times as many pairs, in blocks of 16 bins x 16 beams.
-Errors against_reference(const Scene& scene, const RayScene& rays, const SonarModel& sonar, const Pose& pose) {
-  const std::vector<double> given = blocks_of(MultipathTracer(rays, sonar, scene.water).trace(pose, 2));
-  const std::vector<double> wanted = blocks_of(MultipathTracer(rays, sonar, scene.water, 64).trace(pose, 2));
+Errors against_reference(const MultipathTracer& tracer, const Pose& pose, double samples = 1.0) {
+  const std::vector<double> given = blocks_of(tracer.trace(pose, 2, samples));
+  const std::vector<double> wanted = blocks_of(tracer.trace(pose, 2, 64.0));
   std::vector<std::size_t> order(wanted.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return wanted[a] > wanted[b]; });
@@ -128,9 +129,10 @@ TEST(Multipath, NoiseOfBlocksAgainst64TimesThePairs) {
     const Scene scene = load_scene(c.place);
     const SonarModel sonar = load_sonar("oculus_m1200d_hf");
     const RayScene rays(scene);
+    const MultipathTracer tracer(rays, sonar, scene.water);
     for (const std::size_t waypoint : c.waypoints) {
       SCOPED_TRACE(testing::Message() << c.place << " waypoint " << waypoint);
-      const Errors errors = against_reference(scene, rays, sonar, scene.waypoints.at(waypoint));
+      const Errors errors = against_reference(tracer, scene.waypoints.at(waypoint));
       RecordProperty(std::string(c.place) + "_" + std::to_string(waypoint), std::to_string(errors.share_within));
       EXPECT_LE(errors.total, c.total);
       EXPECT_GE(errors.share_within, c.share_within);
@@ -138,6 +140,27 @@ TEST(Multipath, NoiseOfBlocksAgainst64TimesThePairs) {
       EXPECT_LE(errors.worst, c.worst);
     }
   }
+}
+
+TEST(Multipath, RefusesOrdersAndSamplesBeyondItsRule) {
+  const Scene scene = scene_of({floor_mesh(-1.0)});
+  const RayScene rays(scene);
+  const MultipathTracer tracer(rays, bare_sonar({.elevation_fov_deg = 40.0}), scene.water);
+  EXPECT_THROW(tracer.trace(Pose::Identity(), 1), ConfigError);
+  EXPECT_THROW(tracer.trace(Pose::Identity(), 4), ConfigError);
+  EXPECT_THROW(tracer.trace(Pose::Identity(), 2, 0.0), ConfigError);
+  EXPECT_THROW(tracer.trace(Pose::Identity(), 2, std::nan("")), ConfigError);
+}
+
+// Between rocks, where a ping's walks are few.
+TEST(Multipath, MoreSamplesBringBlocksWithinTenPercent) {
+  const Scene scene = load_scene("breakwater");
+  const RayScene rays(scene);
+  const MultipathTracer tracer(rays, load_sonar("oculus_m1200d_hf"), scene.water);
+  const Errors usual = against_reference(tracer, scene.waypoints.at(2));
+  const Errors more = against_reference(tracer, scene.waypoints.at(2), 16.0);
+  EXPECT_LE(more.mean, 0.5 * usual.mean);
+  EXPECT_GE(more.share_within, 0.85);
 }
 
 // A wooden box between the mirror walls of the test tank, from three poses. The image sources of its visible surface in

@@ -36,7 +36,8 @@ void assign_parameter(FilterStep& step, const std::string& assignment);
 /// Throws ConfigError where parameters do not go together or one is missing, DataError where a model is broken.
 void check_filter(const FilterStep& step);
 
-/// Every parameter and its value, exact: set_parameter() makes the same step of them. Optional ones only where they are set.
+/// Every parameter and its value, exact: set_parameter() makes the same step of them. Optional ones only where they are
+/// set.
 std::vector<std::pair<std::string, std::string>> parameter_values(const FilterStep& step);
 
 }  // namespace ensonify

@@ -94,9 +94,12 @@ json describe(const Recipe& recipe) {
   if (recipe.range_min_m) sonar["range_min_m"] = *recipe.range_min_m;
   if (recipe.range_max_m) sonar["range_max_m"] = describe(*recipe.range_max_m);
   if (recipe.range_bins) sonar["range_bins"] = *recipe.range_bins == 0 ? json("native") : json(*recipe.range_bins);
-  json result{{"name", recipe.name},       {"title", recipe.title},
-              {"seed", recipe.seed},       {"sonar", sonar},
-              {"noise", one_or_list(recipe.noise)}, {"mask", {{"threshold", recipe.mask_threshold}}},
+  json result{{"name", recipe.name},
+              {"title", recipe.title},
+              {"seed", recipe.seed},
+              {"sonar", sonar},
+              {"noise", one_or_list(recipe.noise)},
+              {"mask", {{"threshold", recipe.mask_threshold}}},
               {"truth", recipe.cell_truth}};
   result["drift"] = {{"radial_error_m", recipe.drift.radial_error_m}, {"after_s", recipe.drift.after_s}};
   for (const Split& split : recipe.splits) {

@@ -67,8 +67,9 @@ void visit_frames(const Dataset& dataset, const SplitFrames& frames,
   parallel_for(static_cast<int>(blocks.size()), [&](int b) {
     const auto wanted = [&](int number) { return std::ranges::binary_search(frames.numbers, number); };
     read_block(dataset, blocks[static_cast<std::size_t>(b)], wanted, [&](int number, const FramePixels& pixels) {
-      JudgedFrame frame{
-          number, frames.scene_of[static_cast<std::size_t>(number)], {}, to_grey(pixels.clean).grey, pixels.mask, pixels.labels};
+      JudgedFrame frame{number,      frames.scene_of[static_cast<std::size_t>(number)],
+                        {},          to_grey(pixels.clean).grey,
+                        pixels.mask, pixels.labels};
       frame.raw = std::visit([](const auto& raw) { return to_grey(raw); }, pixels.raw);
       visit(static_cast<int>(std::ranges::lower_bound(frames.numbers, number) - frames.numbers.begin()), frame);
     });

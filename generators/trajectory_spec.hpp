@@ -81,7 +81,7 @@ struct TrajectoryPoses {
   double clearance_m = 0;  ///< radius that must be free all along
   AttitudeNoise attitude_noise;
   bool motion_during_ping = false;  ///< the sonar goes on while the sound is under way (see `receive_in_motion`)
-  std::string where;  ///< file, line and key, for errors that show only once the place is built
+  std::string where;                ///< file, line and key, for errors that show only once the place is built
 };
 
 }  // namespace ensonify

@@ -14,8 +14,8 @@ class Gamma {
  public:
   explicit Gamma(double shape) : shape_(shape), log_gamma_(std::lgamma(shape)) {}
 
-  /// ln x with P(shape, x) = Phi(z), from a guess near it: Newton's steps on the logarithm of the smaller tail, which is
-  /// concave in ln x.
+  /// ln x with P(shape, x) = Phi(z), from a guess near it: Newton's steps on the logarithm of the smaller tail, which
+  /// is concave in ln x.
   double log_quantile(double z, double guess) const {
     const bool low = z < 0.0;
     const double wanted = std::log(0.5 * std::erfc(std::abs(z) / std::numbers::sqrt2));

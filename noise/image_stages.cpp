@@ -34,7 +34,8 @@ struct ImageDisturbance {
     const double fan_deg = degrees(geometry.beam_azimuth_rad.front() - geometry.beam_azimuth_rad.back());
     for (const double azimuth : geometry.beam_azimuth_rad) {
       const double a = degrees(azimuth);
-      lobe.push_back(static_cast<float>(1.0 + (fan_deg > 0.0 ? stage.centre * std::exp(-a * a / (fan_deg / 64)) : 0.0)));
+      lobe.push_back(
+          static_cast<float>(1.0 + (fan_deg > 0.0 ? stage.centre * std::exp(-a * a / (fan_deg / 64)) : 0.0)));
     }
     each_row_with_numbers(to_rayleigh, [&](int bin, std::span<float> row, std::span<const float> rayleigh) {
       const double place = geometry.bin_centre_m(bin) / geometry.range_max_m;
@@ -61,8 +62,7 @@ struct ImageDisturbance {
       edge.push_back(static_cast<float>(std::pow(off, 6.0)));  // flat over most of the fan, as in the recorded pings
     }
     each_row([&](int bin, std::span<float> row) {
-      const auto gain =
-          static_cast<float>((stage.gain - 1.0) * std::exp(-geometry.bin_centre_m(bin) / stage.reach_m));
+      const auto gain = static_cast<float>((stage.gain - 1.0) * std::exp(-geometry.bin_centre_m(bin) / stage.reach_m));
       for (std::size_t b = 0; b < row.size(); ++b) row[b] *= 1.0f + gain * edge[b];
     });
   }
@@ -121,7 +121,8 @@ struct ImageDisturbance {
 
 }  // namespace
 
-Image2<float> disturb_image(const NoiseChain& chain, Image2<float> level, const SonarGeometry& geometry, RandomKey key) {
+Image2<float> disturb_image(const NoiseChain& chain, Image2<float> level, const SonarGeometry& geometry,
+                            RandomKey key) {
   const std::vector<std::string> names = stage_names(chain.stages);
   for (std::size_t i = 0; i < chain.stages.size(); ++i) {
     std::visit(ImageDisturbance{level, geometry, key.child(names[i])}, chain.stages[i]);

@@ -7,8 +7,9 @@
 
 namespace ensonify {
 
-/// Runs the stages of a chain that act on the image: levels 0..1 (rows = bins, columns = beams); the result is clipped to
-/// 0..1. Numbers are addressed by (key, stage, bin, beam): a stage that is switched off changes no other stage's numbers.
+/// Runs the stages of a chain that act on the image: levels 0..1 (rows = bins, columns = beams); the result is clipped
+/// to 0..1. Numbers are addressed by (key, stage, bin, beam): a stage that is switched off changes no other stage's
+/// numbers.
 Image2<float> disturb_image(const NoiseChain& chain, Image2<float> level, const SonarGeometry& geometry, RandomKey key);
 
 }  // namespace ensonify

@@ -60,7 +60,8 @@ void check_order(const Reader& reader, const std::vector<NoiseStage<Distribution
   const NoiseDomain before = domain_of(stages[stages.size() - 2]);
   const NoiseDomain now = domain_of(stages.back());
   if (before == NoiseDomain::speckle && now == NoiseDomain::speckle) {
-    reader.fail("stage", "a profile has one speckle stage: coherent_speckle, rayleigh_speckle, gamma_speckle, k_speckle");
+    reader.fail("stage",
+                "a profile has one speckle stage: coherent_speckle, rayleigh_speckle, gamma_speckle, k_speckle");
   }
   if (now < before) {
     reader.fail("stage", fmt::format("a stage {} can not follow one {}; the order is: on the echo, speckle, on the "
@@ -109,13 +110,16 @@ void check_noise(const NoiseProfile& profile, const SonarModel& sonar) {
   const int beams = sonar.geometry.beams();
   const auto must_fit = [&](const char* kind, const char* parameter, const Distribution& width) {
     if (largest(width) < beams) return;
-    throw ConfigError(fmt::format("noise {}: {}: {} reaches {:g}, which is wider than the fan of {} ({} beams); it must "
-                                  "be less than the number of beams",
-                                  profile.name, kind, parameter, largest(width), sonar.name, beams));
+    throw ConfigError(
+        fmt::format("noise {}: {}: {} reaches {:g}, which is wider than the fan of {} ({} beams); it must "
+                    "be less than the number of beams",
+                    profile.name, kind, parameter, largest(width), sonar.name, beams));
   };
   for (const auto& stage : profile.stages) {
-    if (const auto* s = std::get_if<CrossTalk<Distribution>>(&stage)) must_fit(s->kind, "period_beams", s->period_beams);
-    if (const auto* s = std::get_if<CentreStripe<Distribution>>(&stage)) must_fit(s->kind, "width_beams", s->width_beams);
+    if (const auto* s = std::get_if<CrossTalk<Distribution>>(&stage))
+      must_fit(s->kind, "period_beams", s->period_beams);
+    if (const auto* s = std::get_if<CentreStripe<Distribution>>(&stage))
+      must_fit(s->kind, "width_beams", s->width_beams);
   }
 }
 

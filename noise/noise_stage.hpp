@@ -6,8 +6,8 @@
 
 #include "ensonify/config/reader.hpp"
 
-/// The closed set of disturbances. Every number of a stage is a `Value`: a Distribution in a profile, a double once it is
-/// drawn. A new stage is a struct here, an entry in NoiseStage, and an overload in the file of its domain.
+/// The closed set of disturbances. Every number of a stage is a `Value`: a Distribution in a profile, a double once it
+/// is drawn. A new stage is a struct here, an entry in NoiseStage, and an overload in the file of its domain.
 namespace ensonify {
 
 /// What a stage works on; a chain goes through them in this order.
@@ -21,7 +21,7 @@ enum class NoiseDomain {
 template <typename Stage, typename Value>
 struct Parameter {
   const char* name;
-  Value Stage::* member;
+  Value Stage::*member;
   Limits limits;
   std::optional<double> otherwise = {};  ///< where the profile is silent; none: required
 };
@@ -116,8 +116,8 @@ struct VolumeReverberation {
 };
 
 /// Complex Gaussian noise, new in every ping, through the array as the echo is. Mean power in dB of full scale:
-/// `level_db` at the end of the range window, less with the TVG at shorter ranges (a device sets its gain to the window);
-/// `floor_db` at every range (behind the TVG).
+/// `level_db` at the end of the range window, less with the TVG at shorter ranges (a device sets its gain to the
+/// window); `floor_db` at every range (behind the TVG).
 template <typename Value>
 struct ReceiverNoise {
   static constexpr const char* kind = "receiver_noise";
@@ -129,8 +129,8 @@ struct ReceiverNoise {
   }
 };
 
-/// The transducer rings after the pulse: a pattern of the device, `level_db` of full scale at range 0, falling to 1/e of
-/// its power in `decay_m`.
+/// The transducer rings after the pulse: a pattern of the device, `level_db` of full scale at range 0, falling to 1/e
+/// of its power in `decay_m`.
 template <typename Value>
 struct RingDown {
   static constexpr const char* kind = "ring_down";

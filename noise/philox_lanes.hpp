@@ -10,8 +10,8 @@
 
 namespace ensonify {
 
-/// Philox4x32-10 (Salmon et al. 2011) of eight counters at once, each word in the lower half of 64 bits: so products need
-/// no shuffling, and all stays in registers over the ten rounds. The same words as `random_words`.
+/// Philox4x32-10 (Salmon et al. 2011) of eight counters at once, each word in the lower half of 64 bits: so products
+/// need no shuffling, and all stays in registers over the ten rounds. The same words as `random_words`.
 struct PhiloxLanes {
   using Four = std::uint64_t __attribute__((vector_size(32)));
   static constexpr int lanes = 8;

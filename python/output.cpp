@@ -176,7 +176,8 @@ void bind_output(py::module_& m) {
   m.def("fan_view", &fan_of, py::arg("image"), py::arg("sonar"), py::arg("height") = 720,
         "uint8 [height, width]: the image as an operator sees it, forward up. `image`: uint8 [bins, beams].");
   m.def("polar_view", &polar_of, py::arg("fan"), py::arg("sonar"),
-        "float32 [bins, beams] of such a view (float32 [height, width], the sonar at the middle of its lower edge, range_max "
+        "float32 [bins, beams] of such a view (float32 [height, width], the sonar at the middle of its lower edge, "
+        "range_max "
         "at its upper one). Raises DataError where its width does not go with its height and the sonar's fan.");
 }
 

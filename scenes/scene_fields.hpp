@@ -26,8 +26,8 @@ struct FieldSampler {
 /// yaw_deg} whose values may be distributions.
 Pose read_pose(Reader& reader, std::string_view key, RandomSequence& random);
 
-/// [[a, b, ...], ...]: `low` to `high` entries of `dimensions` finite numbers within 10 km of 0. `form` says how an entry
-/// looks, such as "[x, y]".
+/// [[a, b, ...], ...]: `low` to `high` entries of `dimensions` finite numbers within 10 km of 0. `form` says how an
+/// entry looks, such as "[x, y]".
 std::vector<std::vector<double>> read_points(Reader& reader, std::string_view key, std::size_t dimensions,
                                              std::size_t low, std::size_t high, std::string_view form);
 

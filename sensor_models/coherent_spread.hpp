@@ -8,9 +8,10 @@
 namespace ensonify {
 
 /// Smears a field of independent scatterers as array and pulse do, in complex amplitude. Across beams: the receiving
-/// aperture's own pattern with its sidelobes, to -60 dB and at most 64 beams away. Along range: amplitudes whose squares are PointSpread's weights,
-/// so that the mean power of the main lobe is what the clean image shows; where bins are as long as the pulse, the two
-/// halves have opposite signs, because samples of a matched filter at its own bandwidth are uncorrelated (Woodward 1953).
+/// aperture's own pattern with its sidelobes, to -60 dB and at most 64 beams away. Along range: amplitudes whose
+/// squares are PointSpread's weights, so that the mean power of the main lobe is what the clean image shows; where bins
+/// are as long as the pulse, the two halves have opposite signs, because samples of a matched filter at its own
+/// bandwidth are uncorrelated (Woodward 1953).
 class CoherentSpread {
  public:
   explicit CoherentSpread(const SonarModel& sonar);

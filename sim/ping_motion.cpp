@@ -74,15 +74,15 @@ Echo receive_in_motion(const Echo& echo, const SonarGeometry& geometry, const Tw
       const float power = echo.direct(bin, beam);
       const float elevation = echo.elevation_rad.empty() ? 0.0f : echo.elevation_rad(bin, beam);
       if (power > 0.0f) {
-        share_out(receiver.arrival(bin, beam, static_cast<double>(elevation)), echo.direct, [&](int i, int j, float share) {
-          moved.direct(i, j) += share * power;
-          if (!moved.elevation_rad.empty()) moved.elevation_rad(i, j) += share * power * elevation;
-        });
+        share_out(receiver.arrival(bin, beam, static_cast<double>(elevation)), echo.direct,
+                  [&](int i, int j, float share) {
+                    moved.direct(i, j) += share * power;
+                    if (!moved.elevation_rad.empty()) moved.elevation_rad(i, j) += share * power * elevation;
+                  });
       }
       if (!echo.multipath.empty() && echo.multipath(bin, beam) > 0.0f) {
-        share_out(receiver.arrival(bin, beam, 0.0), echo.direct, [&](int i, int j, float share) {
-          moved.multipath(i, j) += share * echo.multipath(bin, beam);
-        });
+        share_out(receiver.arrival(bin, beam, 0.0), echo.direct,
+                  [&](int i, int j, float share) { moved.multipath(i, j) += share * echo.multipath(bin, beam); });
       }
     }
   }

@@ -14,10 +14,11 @@ struct Twist {
   bool still() const { return velocity_mps.isZero(0.0) && turn_radps.isZero(0.0); }
 };
 
-/// The echo as a sonar receives it that moves while the sound is under way. An echo of range r arrives 2 r / c after the
-/// pulse, when the sonar is v t further and turned by w t: at half the length of its path, and at the bearing it then has.
-/// Energy of a cell goes to the four cells about that place; what leaves the image is lost. Elevations are those of
-/// elevation_rad, or 0 where that is empty, and 0 for multipath. First order in w t: a turn of some degrees at most.
+/// The echo as a sonar receives it that moves while the sound is under way. An echo of range r arrives 2 r / c after
+/// the pulse, when the sonar is v t further and turned by w t: at half the length of its path, and at the bearing it
+/// then has. Energy of a cell goes to the four cells about that place; what leaves the image is lost. Elevations are
+/// those of elevation_rad, or 0 where that is empty, and 0 for multipath. First order in w t: a turn of some degrees at
+/// most.
 Echo receive_in_motion(const Echo& echo, const SonarGeometry& geometry, const Twist& motion, double sound_speed_mps);
 
 }  // namespace ensonify

@@ -17,7 +17,8 @@ struct Camera {
 /// off); the width is that of the bounds.
 Camera plan_camera(const Scene& scene);
 Camera side_camera(const Scene& scene);
-/// Perspective from outside, what lies within the bounds filling the picture. Azimuth: where the camera stands, from east to north.
+/// Perspective from outside, what lies within the bounds filling the picture. Azimuth: where the camera stands, from
+/// east to north.
 Camera oblique_camera(const Scene& scene, double azimuth_rad, double elevation_rad, double aspect);
 
 /// A shaded picture of what people would see without water: colours of the materials, light from the northwest, ambient

@@ -15,10 +15,10 @@ struct Ping {
 
 /// What a trace gives beside the direct echo.
 struct TraceOptions {
-  bool cell_truth = false;  ///< the images of elevation, incidence and instance in the truth
-  bool elevation = false;   ///< Echo::elevation_rad, which coherent speckle needs
-  Twist motion{};           ///< while the sound is under way; truth stays that of the moment of the pulse
-  int multipath_order = 0;  ///< Echo::multipath: surfaces that a path may meet, 2 or 3; 0: none
+  bool cell_truth = false;         ///< the images of elevation, incidence and instance in the truth
+  bool elevation = false;          ///< Echo::elevation_rad, which coherent speckle needs
+  Twist motion{};                  ///< while the sound is under way; truth stays that of the moment of the pulse
+  int multipath_order = 0;         ///< Echo::multipath: surfaces that a path may meet, 2 or 3; 0: none
   double multipath_samples = 1.0;  ///< of multipath, over the usual: more for less noise
 };
 

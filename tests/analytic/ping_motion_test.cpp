@@ -1,9 +1,10 @@
 // A sonar that moves while the sound is under way. An echo of range r is received t = 2 r / c after the pulse.
+#include "ensonify/sim/ping_motion.hpp"
+
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "ensonify/sim/ping_motion.hpp"
 #include "support/pings.hpp"
 
 namespace ensonify {
@@ -13,7 +14,9 @@ using namespace test;
 
 constexpr double c = 1500.0;
 
-SonarGeometry geometry() { return bare_sonar({.beams = 401, .azimuth_fov_deg = 60, .range_min_m = 1, .range_max_m = 41, .bins = 4000}).geometry; }
+SonarGeometry geometry() {
+  return bare_sonar({.beams = 401, .azimuth_fov_deg = 60, .range_min_m = 1, .range_max_m = 41, .bins = 4000}).geometry;
+}
 
 /// Energy-weighted bin and beam of what one cell becomes.
 std::pair<double, double> moved_to(int bin, int beam, const Twist& motion, float elevation_rad = 0.0F) {

@@ -42,7 +42,8 @@ double mean_over_full_scale(const Image2<float>& power, int bin0, int bin1) {
   const std::vector<float> gains = row_gains(instrument());
   double sum = 0;
   for (int bin = bin0; bin < bin1; ++bin) {
-    for (int b = 16; b < beams - 16; ++b) sum += static_cast<double>(power(bin, b) * gains[static_cast<std::size_t>(bin)]);
+    for (int b = 16; b < beams - 16; ++b)
+      sum += static_cast<double>(power(bin, b) * gains[static_cast<std::size_t>(bin)]);
   }
   return sum / ((bin1 - bin0) * (beams - 32));
 }
@@ -60,12 +61,13 @@ TEST(ReceiverNoise, FollowsTheTvgAndHasAFloor) {
   EXPECT_NEAR(db(mean_over_full_scale(floor, 390, 400)), -50.0, 0.6);
 }
 
-// Volume scattering of strength s over the solid angle Omega of a beam's cell: s Omega dr r^-2, through an array of noise
-// gain g (Urick 1983, 8.7). The box pattern fills elevation_fov.
+// Volume scattering of strength s over the solid angle Omega of a beam's cell: s Omega dr r^-2, through an array of
+// noise gain g (Urick 1983, 8.7). The box pattern fills elevation_fov.
 TEST(VolumeReverberation, HasTheLevelOfItsStrength) {
   const SonarModel sonar = instrument();
   const auto water = received({VolumeReverberation<double>{-40}}, silence()).power;
-  const double cell_rad = (sonar.geometry.beam_azimuth_rad.front() - sonar.geometry.beam_azimuth_rad.back()) / (beams - 1);
+  const double cell_rad =
+      (sonar.geometry.beam_azimuth_rad.front() - sonar.geometry.beam_azimuth_rad.back()) / (beams - 1);
   const double solid_angle = cell_rad * 2.0 * std::sin(0.5 * sonar.geometry.elevation_fov_rad);
   for (const int bin : {20, 200, 380}) {
     const double r = sonar.geometry.bin_centre_m(bin);
@@ -96,7 +98,8 @@ TEST(SidelobeArcs, RingTheFanAtTheRangeOfATarget) {
   const auto arcs = received({RayleighSpeckle<double>{}, SidelobeArcs<double>{-40}}, echo);
   double target = 0;
   for (int b = 0; b < beams; ++b) target += static_cast<double>(plain.power(200, b));
-  // Far from the target a beam holds leak * (sum over the fan with the device's phases)^2: within a factor of the phases.
+  // Far from the target a beam holds leak * (sum over the fan with the device's phases)^2: within a factor of the
+  // phases.
   double least = 1e30, most = 0;
   for (int b = 100; b < beams; ++b) {
     least = std::min(least, static_cast<double>(arcs.power(200, b)));
@@ -145,8 +148,8 @@ TEST(Interference, HasItsCountLevelAndLength) {
   EXPECT_NEAR(struck, 0.5 * pings, 4.0 * std::sqrt(0.25 * pings));  // binomial, 4 sigma
 }
 
-// Echo moves away only, by an exponential of the mean asked, and loses exp(-x / sigma): mean left = 1 / 2, at mean 1 / 2
-// sigma (integrals of e^-2x and x e^-2x).
+// Echo moves away only, by an exponential of the mean asked, and loses exp(-x / sigma): mean left = 1 / 2, at mean 1 /
+// 2 sigma (integrals of e^-2x and x e^-2x).
 TEST(RangeJitter, MovesEnergyAway) {
   Echo echo = silence();
   for (int b = 0; b < beams; ++b) echo.direct(50, b) = 1e-6F;

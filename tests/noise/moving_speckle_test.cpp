@@ -1,5 +1,5 @@
-// How speckle follows a sonar that moves over a rough plane. Correlations of intensity over some 20000 independent pixels:
-// standard error 0.007.
+// How speckle follows a sonar that moves over a rough plane. Correlations of intensity over some 20000 independent
+// pixels: standard error 0.007.
 #include <gtest/gtest.h>
 
 #include "ensonify/noise/disturb_echo.hpp"
@@ -17,7 +17,8 @@ constexpr double bin_m = 0.002842;
 constexpr double height_m = 0.4;
 
 SonarModel instrument() {
-  SonarModel sonar = bare_sonar({.elevation_fov_deg = 40, .range_min_m = 0.8, .range_max_m = 0.8 + 400 * bin_m, .bins = 400});
+  SonarModel sonar =
+      bare_sonar({.elevation_fov_deg = 40, .range_min_m = 0.8, .range_max_m = 0.8 + 400 * bin_m, .bins = 400});
   sonar.geometry.beam_azimuth_rad = uniform_sine_beams(256, radians(60.0));
   sonar.elevation = Aperture(Shading::box, sonar.geometry.elevation_fov_rad);
   return sonar;
@@ -32,8 +33,8 @@ std::vector<double> speckle_at(const Vec3& offset, double yaw_rad = 0.0) {
   const Echo echo = PingTracer(rays, sonar, scene.water).trace(T_world_sonar, {.elevation = true}).echo;
   const RandomKey key = RandomKey::from_seed(2024);
   const Receiver receiver(sonar);
-  const auto received =
-      disturb_echo({"test", {CoherentSpeckle<double>{}}}, echo, receiver, {T_world_sonar, key.child("surface"), {}, {}});
+  const auto received = disturb_echo({"test", {CoherentSpeckle<double>{}}}, echo, receiver,
+                                     {T_world_sonar, key.child("surface"), {}, {}});
   const Image2<float> mean = receiver.spread.apply(echo.direct);
   std::vector<double> x;
   for (int bin = 20; bin < 380; ++bin) {

@@ -47,8 +47,10 @@ TEST(NoiseProfile, RefusesWhatBreaksARule) {
 TEST(NoiseProfile, KeepsTheOrderOfPhysics) {
   EXPECT_THAT(refusal("  - {stage: gaussian_speckle, sigma: 0.1}\n  - {stage: coherent_speckle}\n"),
               HasSubstr("can not follow"));
-  EXPECT_THAT(refusal("  - {stage: receiver_noise, level_db: -30}\n  - {stage: multipath}\n"), HasSubstr("can not follow"));
-  EXPECT_THAT(refusal("  - {stage: coherent_speckle}\n  - {stage: rayleigh_speckle}\n"), HasSubstr("one speckle stage"));
+  EXPECT_THAT(refusal("  - {stage: receiver_noise, level_db: -30}\n  - {stage: multipath}\n"),
+              HasSubstr("can not follow"));
+  EXPECT_THAT(refusal("  - {stage: coherent_speckle}\n  - {stage: rayleigh_speckle}\n"),
+              HasSubstr("one speckle stage"));
 }
 
 // Every bundled profile loads, fits every bundled Oculus, and draws the same numbers for the same key.

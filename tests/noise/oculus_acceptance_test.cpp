@@ -1,6 +1,7 @@
 // Simulated pings of an Oculus at 2.1 MHz in a rough tank, as the recorded ones: 256 beams, 703 bins, 2 m; profile
-// oculus_tank. Every band of acceptance.json (../shared/real/oculus_m1200d_2100khz, from three real pings) must hold the
-// 99.9 % confidence interval of the mean over 20 seeds: mean +- 3.88 s / sqrt(20) (Student, 19 degrees, alpha = 0.001).
+// oculus_tank. Every band of acceptance.json (../shared/real/oculus_m1200d_2100khz, from three real pings) must hold
+// the 99.9 % confidence interval of the mean over 20 seeds: mean +- 3.88 s / sqrt(20) (Student, 19 degrees, alpha =
+// 0.001).
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -21,7 +22,8 @@ constexpr Region water{70, 170, 60, 200};
 
 GreyImage grey(const SonarImage& image) {
   GreyImage result{Image2<float>(image.grey.rows(), image.grey.columns()), GreyDepth::bits8};
-  for (std::size_t i = 0; i < image.grey.size(); ++i) result.grey.pixels()[i] = static_cast<float>(image.grey.pixels()[i]);
+  for (std::size_t i = 0; i < image.grey.size(); ++i)
+    result.grey.pixels()[i] = static_cast<float>(image.grey.pixels()[i]);
   return result;
 }
 

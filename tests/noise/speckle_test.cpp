@@ -51,7 +51,8 @@ TEST(CoherentSpeckle, IsFullyDeveloped) {
   const Receiver receiver(sonar);
   std::vector<double> all;
   for (std::uint64_t seed = 2024; seed < 2044; ++seed) {
-    const auto received = disturb_echo(chain_of({CoherentSpeckle<double>{}}), even_echo(sonar), receiver, setting_of(seed));
+    const auto received =
+        disturb_echo(chain_of({CoherentSpeckle<double>{}}), even_echo(sonar), receiver, setting_of(seed));
     const auto x = pixels_apart(received.power, 4, 2);
     all.insert(all.end(), x.begin(), x.end());
   }
@@ -75,7 +76,8 @@ TEST(CoherentSpeckle, KeepsTheMeanPowerOfTheCleanImage) {
   const Receiver receiver(sonar);
   Echo echo = even_echo(sonar);
   for (int bin = 0; bin < 512; ++bin) {
-    for (int b = 0; b < 256; ++b) echo.direct(bin, b) *= static_cast<float>(1.0 + std::sin(0.05 * bin) * std::cos(0.1 * b));
+    for (int b = 0; b < 256; ++b)
+      echo.direct(bin, b) *= static_cast<float>(1.0 + std::sin(0.05 * bin) * std::cos(0.1 * b));
   }
   const Image2<float> clean = receiver.spread.apply(echo.direct);
   Image2<double> mean(512, 256);
@@ -86,8 +88,8 @@ TEST(CoherentSpeckle, KeepsTheMeanPowerOfTheCleanImage) {
       mean.pixels()[i] += static_cast<double>(received.power.pixels()[i]) / pings;
     }
   }
-  // 32 x 32 pixels hold some 500 independent ones: 60 pings of them err by 1 / sqrt(30000) = 0.6 %. Sidelobes of Hann hold
-  // 0.1 %.
+  // 32 x 32 pixels hold some 500 independent ones: 60 pings of them err by 1 / sqrt(30000) = 0.6 %. Sidelobes of Hann
+  // hold 0.1 %.
   for (int bin = 32; bin + 32 <= 480; bin += 32) {
     for (int b = 32; b + 32 <= 224; b += 32) {
       double measured = 0, expected = 0;
@@ -102,7 +104,8 @@ TEST(CoherentSpeckle, KeepsTheMeanPowerOfTheCleanImage) {
   }
 }
 
-// White along range, two beams a resolution cell across: the recorded pings have .04 to .07 and .51 to .55 / .10 to .12.
+// White along range, two beams a resolution cell across: the recorded pings have .04 to .07 and .51 to .55 / .10 to
+// .12.
 TEST(CoherentSpeckle, IsCorrelatedAsTheArrayIs) {
   const SonarModel sonar = instrument();
   const auto power =

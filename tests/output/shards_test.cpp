@@ -214,7 +214,8 @@ TEST(FanView, BackToPolarIsTheImageItWasDrawnFrom) {
   const SonarGeometry g = wide_fan();
   Image2<float> image(160, 121);
   for (int k = 0; k < 160; ++k) {
-    for (int b = 0; b < 121; ++b) image(k, b) = static_cast<float>(120.0 + 80.0 * std::sin(0.05 * k) * std::cos(0.04 * b));
+    for (int b = 0; b < 121; ++b)
+      image(k, b) = static_cast<float>(120.0 + 80.0 * std::sin(0.05 * k) * std::cos(0.04 * b));
   }
   const Image2<float> back = polar_view(fan_view(image, g, 720, Resampling::bilinear), g);
   ASSERT_EQ(back.rows(), 160);

@@ -27,15 +27,21 @@ struct Sheet {
 };
 
 TEST(SonarLoader, BundledSonarsAreThoseOfTheDataSheets) {
-  const std::vector<Sheet> sheets{
-      {"aris_explorer_3000", 3000, 128, 30, 15, 0.25, 5}, {"aris_explorer_3000_lf", 1800, 128, 30, 15, 0.4, 15},
-      {"blueview_p900", 900, 512, 90, 20, 1.0, 60},       {"didson_hf", 1800, 96, 29, 14, 0.3, 12},
-      {"didson_lf", 1100, 48, 29, 14, 0.6, 35},           {"gemini_720is", 720, 512, 120, 20, 1.0, 120},
-      {"holoocean", 900, 512, 120, 20, 0.235, 100},       {"oculus_m1200d_hf", 2100, 512, 60, 12, 0.4, 10},
-      {"oculus_m1200d_hf_256", 2100, 256, 60, 12, 0.4, 10},
-      {"oculus_m1200d_lf", 1200, 512, 130, 20, 0.6, 40},  {"oculus_m3000d_hf", 3000, 512, 40, 20, 0.25, 5},
-      {"oculus_m3000d_lf", 1200, 512, 130, 20, 0.6, 30},  {"oculus_m370s", 375, 256, 130, 20, 2.0, 200},
-      {"oculus_m750d_hf", 1200, 512, 130, 20, 0.6, 40},   {"oculus_m750d_lf", 750, 512, 130, 20, 1.0, 120}};
+  const std::vector<Sheet> sheets{{"aris_explorer_3000", 3000, 128, 30, 15, 0.25, 5},
+                                  {"aris_explorer_3000_lf", 1800, 128, 30, 15, 0.4, 15},
+                                  {"blueview_p900", 900, 512, 90, 20, 1.0, 60},
+                                  {"didson_hf", 1800, 96, 29, 14, 0.3, 12},
+                                  {"didson_lf", 1100, 48, 29, 14, 0.6, 35},
+                                  {"gemini_720is", 720, 512, 120, 20, 1.0, 120},
+                                  {"holoocean", 900, 512, 120, 20, 0.235, 100},
+                                  {"oculus_m1200d_hf", 2100, 512, 60, 12, 0.4, 10},
+                                  {"oculus_m1200d_hf_256", 2100, 256, 60, 12, 0.4, 10},
+                                  {"oculus_m1200d_lf", 1200, 512, 130, 20, 0.6, 40},
+                                  {"oculus_m3000d_hf", 3000, 512, 40, 20, 0.25, 5},
+                                  {"oculus_m3000d_lf", 1200, 512, 130, 20, 0.6, 30},
+                                  {"oculus_m370s", 375, 256, 130, 20, 2.0, 200},
+                                  {"oculus_m750d_hf", 1200, 512, 130, 20, 0.6, 40},
+                                  {"oculus_m750d_lf", 750, 512, 130, 20, 1.0, 120}};
   std::vector<std::string> names;
   for (const Sheet& sheet : sheets) names.push_back(sheet.name);
   EXPECT_EQ(library_names("sensor_models"), names);

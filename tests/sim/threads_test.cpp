@@ -69,7 +69,8 @@ TEST(Threads, CellTruthChangesNoEcho) {
   const RayScene rays(scene);
   const SonarModel sonar = bare_sonar({.elevation_rays = 128});
   const PingTracer tracer(rays, sonar, scene.water);
-  EXPECT_TRUE(same_bits(tracer.trace(Pose::Identity(), {.cell_truth = true}).echo.direct, tracer.trace(Pose::Identity()).echo.direct));
+  EXPECT_TRUE(same_bits(tracer.trace(Pose::Identity(), {.cell_truth = true}).echo.direct,
+                        tracer.trace(Pose::Identity()).echo.direct));
 }
 
 }  // namespace

@@ -68,17 +68,16 @@ std::string write_grids(const DatasetPaths& paths, const std::string& place, con
 void write_trajectories(const FrameMaker& maker, const DatasetPaths& paths, const std::vector<std::vector<int>>& frames,
                         std::vector<std::filesystem::path>& files) {
   for (std::size_t place = 0; place < frames.size(); ++place) {
+    if (!maker.trajectory(static_cast<int>(place))) continue;
     std::vector<StampedPose> truth;
     std::vector<StampedPose> estimate;
     std::string split;
     for (const int index : frames[place]) {
       const FramePose pose = maker.pose(index);
-      if (!pose.time_s) break;
       split = maker.recipe().splits[static_cast<std::size_t>(pose.split)].name;
       truth.push_back({*pose.time_s, pose.T_world_sonar});
       estimate.push_back({*pose.time_s, pose.T_world_sonar_est});
     }
-    if (truth.empty()) continue;
     const auto folder = paths.root / split / "trajectories";
     files.push_back(folder / (maker.places()[place].name + ".txt"));
     write_tum(files.back(), truth);

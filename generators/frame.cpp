@@ -53,6 +53,11 @@ struct FrameMaker::Slot {
   std::optional<Place> place;
   std::optional<PingTracer> tracer;
   std::optional<Trajectory> trajectory;
+
+  void free_ray_caster() {
+    tracer.reset();
+    const RayScene freed = std::move(place->rays);
+  }
 };
 
 FrameMaker::FrameMaker(Recipe recipe, std::string isa)
@@ -82,9 +87,17 @@ const FrameMaker::Slot& FrameMaker::slot(int index) const {
         slot.trajectory.emplace(*spec, slot.place->scene, key);
       }
       slot.place->scene.meshes = {};  // the ray caster has its own copy, and sets have many places
+      if (pings_ended_) slot.free_ray_caster();
     });
   });
   return slot;
+}
+
+void FrameMaker::end_pings() {
+  pings_ended_ = true;
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    if (slots_[i].place) slots_[i].free_ray_caster();
+  }
 }
 
 const Place& FrameMaker::place(int index) const { return *slot(index).place; }

@@ -70,6 +70,10 @@ class FrameMaker {
   /// `seed` names. A pure function of split and keys. Throws ConfigError where the split follows trajectories.
   Frame draw(int split, RandomKey seed, RandomKey frame) const;
 
+  /// Frees the ray casters, most of what a place takes, once no more frames are made. Afterwards a place is its truth
+  /// and its trajectory, and neither pings nor random poses may be asked for. Not while another thread uses the maker.
+  void end_pings();
+
  private:
   struct Slot;
   struct Keys {
@@ -93,6 +97,7 @@ class FrameMaker {
   std::vector<NoiseProfile> noises_;
   std::vector<PlaceRef> places_;
   std::unique_ptr<Slot[]> slots_;
+  bool pings_ended_ = false;
 };
 
 }  // namespace ensonify

@@ -81,7 +81,7 @@ std::string command_line_of(const std::string& recipe_source, const Recipe& reci
 }
 
 Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
-  const FrameMaker maker(recipe, options.isa);
+  FrameMaker maker(recipe, options.isa);
   if (recipe.cell_truth && options.format == SampleFormat::webdataset) {
     throw ConfigError("truth: true writes EXR files, which WebDataset shards do not hold; use --format folder");
   }
@@ -138,6 +138,7 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
     all_done = false;
   }
   if (!all_done) return Outcome::shard_done;
+  maker.end_pings();
   return finish_dataset(maker, paths, blocks, options) ? Outcome::complete : Outcome::stopped;
 }
 

@@ -191,6 +191,24 @@ TEST_F(Frames, SpeedIsDrawnOnceAPlaceAndRecorded) {
   EXPECT_LE(speeds[0], 0.4);
 }
 
+// The second layout is built only after the end.
+TEST_F(Frames, EndOfPingsFreesRayCastersAndKeepsTruthAndTrajectories) {
+  std::string text = head + "splits:\n" + swum_split;
+  text.replace(text.find("[{scene: way.yaml}]"), 19, "[{scene: way.yaml, layouts: [0, 1]}]");
+  text.replace(text.find("frames: 5"), 9, "frames: 6");
+  const FrameMaker whole(recipe(text), default_isa);
+  FrameMaker ended(recipe(text), default_isa);
+  ASSERT_NE(ended.place(0).rays.handle(), nullptr);
+  ended.end_pings();
+  for (const int frame : {0, 2, 3, 5}) {
+    const int place = ended.locate(frame).place;
+    EXPECT_EQ(ended.pose(frame).T_world_sonar.matrix(), whole.pose(frame).T_world_sonar.matrix());
+    EXPECT_EQ(ended.place(place).truth.occupancy, whole.place(place).truth.occupancy);
+    EXPECT_EQ(ended.place(place).rays.handle(), nullptr);
+  }
+  EXPECT_NE(ended.locate(0).place, ended.locate(5).place);
+}
+
 TEST_F(Frames, NoRoomIsADataErrorWithACure) {
   std::string text = head + "splits:\n" + random_split;
   text.replace(text.find("clearance_m: 0.3"), 16, "clearance_m: 4.0");

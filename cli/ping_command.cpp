@@ -84,7 +84,7 @@ void run(const Arguments& a) {
   for (const auto& [name, value] : sampled) record["sampled"][name] = value;
   for (std::size_t i = 0; i < scene.instances.size(); ++i) record["instances"].push_back(scene.instances[i].name);
   const std::filesystem::path out = a.out;
-  write_unbroken(out, [&] {
+  write_unbroken(out, [&, &ping = ping, &images = images] {
     write_file(out / "raw.png", encode_png(images.raw.grey));
     write_file(out / "clean.png", encode_png(images.clean.grey));
     write_file(out / "mask.png", encode_png(images.mask));

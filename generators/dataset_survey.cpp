@@ -36,7 +36,7 @@ void add_frame(const FrameInfo& frame, Vec3& before, PlaceFrames& at) {
   for (const auto& [key, value] : frame.sampled) at.sampled[key].push_back(value);
   if (frame.time_s) {
     if (at.way) at.way->length_m += (p - before).norm();
-    if (!at.way) at.way.emplace();
+    if (!at.way) at.way = {0.0, 0.0, 0.0};
     at.way->duration_s = *frame.time_s;
     at.way->drift_m = (frame.T_world_sonar_est.translation() - p).norm();
   }

@@ -18,8 +18,8 @@ struct PlaceFrames {
   std::map<std::string, std::vector<double>> sampled;  ///< a key may be missing in some frames
   /// Of a trajectory, along its frames; empty for random poses.
   struct Way {
-    double duration_s = 0, length_m = 0;
-    double drift_m = 0;  ///< dead-reckoned from true position at the last frame
+    double duration_s, length_m;
+    double drift_m;  ///< dead-reckoned from true position at the last frame
   };
   std::optional<Way> way;
 };

@@ -99,12 +99,12 @@ StatsPlots plots_of(const DatasetStats& stats) {
     while (title.ends_with(' ')) title.pop_back();
     title.front() = static_cast<char>(std::toupper(title.front()));
     plots.poses.emplace_back(key, spread_plot(stats, titled_plot(title, name, "share of frames"),
-                                              [&](const Figures& f) { return find(f.poses, key); }));
+                                              [&key = key](const Figures& f) { return find(f.poses, key); }));
   }
   for (const auto& [key, summary] : stats.overall.sampled) {
     if (plots.sampled.size() >= most_sampled_plots) break;
     plots.sampled.emplace_back(key, spread_plot(stats, titled_plot("Sampled: " + key, key, "share of frames"),
-                                                [&](const Figures& f) { return find(f.sampled, key); }));
+                                                [&key = key](const Figures& f) { return find(f.sampled, key); }));
   }
   return plots;
 }

@@ -54,7 +54,8 @@ TEST_F(RealPings, HaveTheRecordedSpeckle) {
     for (std::uint64_t i = 0; i < 100; ++i) {
       draws.push_back(speckle_figures(first, region, key.child(i)));
     }
-    const auto check = [&](const char* what, const nlohmann::json& value, double tolerance, const auto& figure) {
+    const auto check = [&, &name = name](const char* what, const nlohmann::json& value, double tolerance,
+                                         const auto& figure) {
       double low = figure(draws[0]), high = low;
       for (const SpeckleFigures& f : draws) {
         low = std::min(low, figure(f));

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "ensonify/core/error.hpp"
+#include "ensonify/sim/voxel_surface.hpp"
 
 namespace ensonify {
 namespace {
@@ -180,6 +181,16 @@ std::vector<CellRun> hit_cells(const PingTruth& truth, const Frustum& frustum, c
     if (!frustum.holds_direction(azimuth, 0)) continue;
     columns.push_back({c, axes * Vec3(std::cos(azimuth), std::sin(azimuth), 0)});
   }
+  const auto surface_cell = [&](const Vec3& at) -> std::optional<std::uint32_t> {
+    if (!((at.array() >= 0).all() && (at.array() < beyond.array()).all())) return std::nullopt;
+    const std::size_t cell =
+        grid.frame.index(static_cast<int>(at.x()), static_cast<int>(at.y()), static_cast<int>(at.z()));
+    if (grid.occupancy[cell] != static_cast<std::uint8_t>(Occupancy::surface)) return std::nullopt;
+    return static_cast<std::uint32_t>(cell);
+  };
+  // A hit on a border of cells belongs to the layer behind it, where the face was marked, however its range was
+  // rounded.
+  const double rounding_m = 0.9 * surface_margin_cells * grid.frame.resolution_m;
   for (int r = 0; r < truth.first_hit_range_m.rows(); ++r) {
     for (const Column& column : columns) {
       const double range = truth.first_hit_range_m(r, column.index);
@@ -187,13 +198,10 @@ std::vector<CellRun> hit_cells(const PingTruth& truth, const Frustum& frustum, c
       const double elevation =
           truth.lowest_elevation_rad[column.index] + static_cast<double>(r) * truth.elevation_step_rad;
       if (std::abs(elevation) > frustum.elevation_max_rad) continue;
-      const Vec3 hit = sonar + range * (std::cos(elevation) * column.ahead + std::sin(elevation) * axes.col(2));
-      if (!((hit.array() >= 0).all() && (hit.array() < beyond.array()).all())) continue;
-      const std::size_t cell =
-          grid.frame.index(static_cast<int>(hit.x()), static_cast<int>(hit.y()), static_cast<int>(hit.z()));
-      if (grid.occupancy[cell] != static_cast<std::uint8_t>(Occupancy::surface)) continue;
-      const auto c = static_cast<std::uint32_t>(cell);
-      if (cells.empty() || cells.back() != c) cells.push_back(c);  // neighbouring rays mostly hit the same cell
+      const Vec3 ahead = std::cos(elevation) * column.ahead + std::sin(elevation) * axes.col(2);
+      const std::optional<std::uint32_t> behind = surface_cell(sonar + (range + rounding_m) * ahead);
+      const std::optional<std::uint32_t> cell = behind ? behind : surface_cell(sonar + (range - rounding_m) * ahead);
+      if (cell && (cells.empty() || cells.back() != *cell)) cells.push_back(*cell);  // mostly that of the ray before
     }
   }
   std::sort(cells.begin(), cells.end());

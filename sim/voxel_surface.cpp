@@ -2,13 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "ensonify/core/parallel.hpp"
 
 namespace ensonify {
 namespace {
-
-constexpr double half_cell = 0.5 + surface_margin_cells;
 
 /// p * m_p + q * m_q + k is below 0 for cell indices (p, q) where the cell's square is wholly outside of this edge.
 struct EdgeTest {
@@ -18,7 +17,7 @@ struct EdgeTest {
 
 /// The three edges of a triangle seen along the axis that is neither p nor q.
 template <int p, int q>
-std::array<EdgeTest, 3> edge_tests(const std::array<Vec3, 3>& corner) {
+std::array<EdgeTest, 3> edge_tests(const std::array<Vec3, 3>& corner, double half_cell) {
   const double area = (corner[1][p] - corner[0][p]) * (corner[2][q] - corner[0][q]) -
                       (corner[1][q] - corner[0][q]) * (corner[2][p] - corner[0][p]);
   const double sign = area < 0 ? -1.0 : 1.0;
@@ -60,19 +59,20 @@ using Cell = std::array<int, 3>;
 /// Marks the cells of the block first .. first + extent - 1 that the triangle touches, by columns along axis w, the
 /// dominant one of the normal n. Corners relative to the block.
 template <int w>
-void mark_by_columns(const std::array<Vec3, 3>& corner, const Vec3& n, const Cell& first, const Cell& extent,
-                     BitGrid& surface) {
+void mark_by_columns(const std::array<Vec3, 3>& corner, const Vec3& n, double margin, const Cell& first,
+                     const Cell& extent, BitGrid& surface) {
   constexpr int u = (w + 1) % 3;
   constexpr int v = (w + 2) % 3;
-  const auto tests_uv = edge_tests<u, v>(corner);
-  const auto tests_vw = edge_tests<v, w>(corner);
-  const auto tests_wu = edge_tests<w, u>(corner);
+  const double half_cell = 0.5 + margin;
+  const auto tests_uv = edge_tests<u, v>(corner, half_cell);
+  const auto tests_vw = edge_tests<v, w>(corner, half_cell);
+  const auto tests_wu = edge_tests<w, u>(corner, half_cell);
 
   const bool has_plane = normal_is_sure(corner, n);
   const double inverse = has_plane ? 1.0 / n[w] : 0.0;
   const double slope_u = -n[u] * inverse;
   const double slope_v = -n[v] * inverse;
-  const double reach = half_cell * (std::abs(slope_u) + std::abs(slope_v)) + surface_margin_cells;
+  const double reach = half_cell * (std::abs(slope_u) + std::abs(slope_v)) + margin;
   const double base = corner[0][w] + slope_u * (0.5 - corner[0][u]) + slope_v * (0.5 - corner[0][v]);
 
   for (int iv = 0; iv < extent[v]; ++iv) {
@@ -97,14 +97,15 @@ void mark_by_columns(const std::array<Vec3, 3>& corner, const Vec3& n, const Cel
   }
 }
 
-void mark_triangle(std::array<Vec3, 3> corner, BitGrid& surface) {
+/// Marks what the triangle touches of cells that are wider by `margin` on every side.
+void mark_touched(std::array<Vec3, 3> corner, double margin, BitGrid& surface) {
   Cell first;
   Cell extent;
   int thin_axes = 0;
   for (int a = 0; a < 3; ++a) {
     const auto [low, high] = std::minmax({corner[0][a], corner[1][a], corner[2][a]});
-    const double from_whole = std::floor(low - surface.low[a] - surface_margin_cells);
-    const double to_whole = std::floor(high - surface.low[a] + surface_margin_cells);
+    const double from_whole = std::floor(low - surface.low[a] - margin);
+    const double to_whole = std::floor(high - surface.low[a] + margin);
     const double from = std::max(from_whole, 1.0);
     const double to = std::min(to_whole, surface.size[a] - 2.0);
     if (!(from <= to)) return;
@@ -117,15 +118,45 @@ void mark_triangle(std::array<Vec3, 3> corner, BitGrid& surface) {
   if (thin_axes < 2) {
     const Vec3 n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
     const int w = dominant_axis(n);
-    if (w == 0) return mark_by_columns<0>(corner, n, first, extent, surface);
-    if (w == 1) return mark_by_columns<1>(corner, n, first, extent, surface);
-    return mark_by_columns<2>(corner, n, first, extent, surface);
+    if (w == 0) return mark_by_columns<0>(corner, n, margin, first, extent, surface);
+    if (w == 1) return mark_by_columns<1>(corner, n, margin, first, extent, surface);
+    return mark_by_columns<2>(corner, n, margin, first, extent, surface);
   }
   for (int z = 0; z < extent[2]; ++z) {
     for (int y = 0; y < extent[1]; ++y) {
       for (int x = 0; x < extent[0]; ++x) surface.set(first[0] + x, first[1] + y, first[2] + z);
     }
   }
+}
+
+/// The axis across whose cell borders the triangle lies within the margin, or none. Slivers are none: they could vanish
+/// between cells.
+std::optional<int> axis_of_border(const std::array<Vec3, 3>& corner) {
+  constexpr double least_width_cells = 8 * surface_margin_cells;
+  std::optional<int> flat;
+  for (int a = 0; a < 3; ++a) {
+    const auto [low, high] = std::minmax({corner[0][a], corner[1][a], corner[2][a]});
+    const double border = std::round(low);
+    if (low >= border - surface_margin_cells && high <= border + surface_margin_cells) {
+      if (flat) return std::nullopt;
+      flat = a;
+    } else if (high - low < least_width_cells) {
+      return std::nullopt;
+    }
+  }
+  return flat;
+}
+
+void mark_triangle(std::array<Vec3, 3> corner, BitGrid& surface) {
+  if (const std::optional<int> axis = axis_of_border(corner)) {
+    const Vec3 n = (corner[1] - corner[0]).cross(corner[2] - corner[0]);
+    if (normal_is_sure(corner, n)) {
+      const double behind = std::round(corner[0][*axis]) - std::copysign(0.5, n[*axis]);
+      for (Vec3& c : corner) c[*axis] = behind;
+      return mark_touched(corner, -surface_margin_cells, surface);
+    }
+  }
+  mark_touched(corner, surface_margin_cells, surface);
 }
 
 }  // namespace

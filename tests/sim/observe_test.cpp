@@ -110,28 +110,30 @@ TEST(Observe, SameAsTheDefinitionCellByCell) {
   });
 }
 
-/// A wall of surface cells with interior behind it, 3 m ahead of a sonar at the origin.
+/// A wall of surface cells with interior behind it, 3 m ahead of a sonar at the origin: within the cells, and on
+/// their border, rounded to its near side.
 TEST(Observe, WallIsSeenAndNothingBehindIt) {
-  const SonarGeometry g = geometry(0.2, 4.8, 60, 12);
-  OccupancyGrid grid = empty_grid(5, 0.1);
-  for_each_cell(grid,
-                [&](int x, int, int, std::size_t i) { grid.occupancy[i] = x == 80 ? 1 : (x > 80 && x < 84 ? 2 : 0); });
-  const double wall_m = 3.02;
-  const PingTruth truth = truth_of(g, [&](double a, double e) { return wall_m / (std::cos(a) * std::cos(e)); });
-  mark_observed(truth, g, Pose::Identity(), grid);
-  std::size_t seen_wall = 0;
-  for_each_cell(grid, [&](int x, int y, int z, std::size_t i) {
-    ASSERT_TRUE(x <= 80 || grid.observable[i] == 0) << x;
-    if (x != 80) return;
-    seen_wall += grid.observable[i];
-    const Vec3 p = grid.frame.centre_m(x, y, z);
-    const Spherical s = to_spherical({wall_m, p.y(), p.z()});
-    const bool well_inside = std::abs(s.azimuth_rad) < radians(29) && std::abs(s.elevation_rad) < radians(5);
-    const bool well_outside = std::abs(s.azimuth_rad) > radians(31.5) || std::abs(s.elevation_rad) > radians(7.5);
-    ASSERT_TRUE(!well_inside || grid.observable[i] == 1);
-    ASSERT_TRUE(!well_outside || grid.observable[i] == 0);
-  });
-  EXPECT_NEAR(static_cast<double>(seen_wall), 2 * 30 * std::tan(radians(30)) * 2 * 32 * std::tan(radians(6)), 80);
+  for (const double wall_m : {3.02, 3.0 - 2e-6}) {
+    const SonarGeometry g = geometry(0.2, 4.8, 60, 12);
+    OccupancyGrid grid = empty_grid(5, 0.1);
+    for_each_cell(
+        grid, [&](int x, int, int, std::size_t i) { grid.occupancy[i] = x == 80 ? 1 : (x > 80 && x < 84 ? 2 : 0); });
+    const PingTruth truth = truth_of(g, [&](double a, double e) { return wall_m / (std::cos(a) * std::cos(e)); });
+    mark_observed(truth, g, Pose::Identity(), grid);
+    std::size_t seen_wall = 0;
+    for_each_cell(grid, [&](int x, int y, int z, std::size_t i) {
+      ASSERT_TRUE(x <= 80 || grid.observable[i] == 0) << x;
+      if (x != 80) return;
+      seen_wall += grid.observable[i];
+      const Vec3 p = grid.frame.centre_m(x, y, z);
+      const Spherical s = to_spherical({wall_m, p.y(), p.z()});
+      const bool well_inside = std::abs(s.azimuth_rad) < radians(29) && std::abs(s.elevation_rad) < radians(5);
+      const bool well_outside = std::abs(s.azimuth_rad) > radians(31.5) || std::abs(s.elevation_rad) > radians(7.5);
+      ASSERT_TRUE(!well_inside || grid.observable[i] == 1);
+      ASSERT_TRUE(!well_outside || grid.observable[i] == 0);
+    });
+    EXPECT_NEAR(static_cast<double>(seen_wall), 2 * 30 * std::tan(radians(30)) * 2 * 32 * std::tan(radians(6)), 80);
+  }
 }
 
 TEST(Observe, ASecondPingOnlyAddsAndSurfaceWithoutHitStaysUnseen) {

@@ -36,6 +36,11 @@ struct Setup {
     settings.noise = sample_noise(load_noise("paper"), RandomKey{}, sampled);
   }
 
+  PingSetting setting(const Pose& T_world_sonar) const {
+    return {.T_world_sonar = T_world_sonar,
+            .absorption_db_per_m = absorption_db_per_m(scene.water, sonar.frequency_hz)};
+  }
+
   Scene scene;
   RayScene rays;
   SonarModel sonar;
@@ -142,7 +147,7 @@ void whole_ping(benchmark::State& state, const char* place, const char* profile)
       const Ping ping = setup.tracer.trace(pose, trace_options(setup.settings.noise, false));
       const auto middle = Clock::now();
       benchmark::DoNotOptimize(
-          form_images(setup.receiver, ping, setup.settings, {.T_world_sonar = pose}).raw.grey.pixels().data());
+          form_images(setup.receiver, ping, setup.settings, setup.setting(pose)).raw.grey.pixels().data());
       const auto end = Clock::now();
       trace_s += std::chrono::duration<double>(middle - start).count();
       form_s += std::chrono::duration<double>(end - middle).count();

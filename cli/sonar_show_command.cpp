@@ -12,6 +12,7 @@
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/plot.hpp"
 #include "ensonify/scenes/water.hpp"
+#include "ensonify/sensor_models/fan_pattern.hpp"
 #include "ensonify/sensor_models/point_spread.hpp"
 #include "ensonify/sensor_models/receive_chain.hpp"
 
@@ -114,11 +115,11 @@ Plot range_plot(const SonarModel& sonar) {
 Plot fan_plot(const SonarModel& sonar) {
   Plot plot = titled_plot("Loss across the fan, two ways", "azimuth [deg]", "[dB]");
   const auto& beams = sonar.geometry.beam_azimuth_rad;
-  const double edge = std::max(std::abs(beams.front()), 1e-9);
+  const FanPattern pattern(sonar);
   Series series;
   for (const double azimuth : beams) {
     series.x.push_back(degrees(azimuth));
-    series.y.push_back(-sonar.fan_edge_db * std::pow(azimuth / edge, 2));
+    series.y.push_back(10.0 * std::log10(pattern(azimuth)));
   }
   plot.y_range = {{-std::max(6.0, 1.5 * sonar.fan_edge_db), 1.0}};
   plot.series.push_back(series);

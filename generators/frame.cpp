@@ -273,7 +273,8 @@ Frame FrameMaker::form(FramePose pose, const Keys& keys) const {
   settings.mask_threshold = recipe_.mask_threshold;
 
   const PingSetting setting{frame.pose.T_world_sonar, keys.set.child("surface").child(places_[frame.pose.place].name),
-                            keys.set.child("device").child(receiver_.sonar.name), keys.frame.child("noise")};
+                            keys.set.child("device").child(receiver_.sonar.name), keys.frame.child("noise"),
+                            absorption_db_per_m(place(frame.pose.place).scene.water, frame.sonar.frequency_hz)};
   TraceOptions options = trace_options(settings.noise, recipe_.cell_truth);
   options.motion = frame.pose.motion;
   Ping ping = trace(frame.pose, frame.sonar, options);

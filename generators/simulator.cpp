@@ -15,6 +15,7 @@ Simulator::Simulator(const Scene& scene, const SonarModel& sonar, NoiseProfile n
       mask_threshold_(mask_threshold),
       rays_(scene, isa),
       receiver_(sonar),
+      absorption_db_per_m_(absorption_db_per_m(scene.water, sonar.frequency_hz)),
       tracer_(rays_, sonar, scene.water) {
   check_noise(noise_, sonar);
 }
@@ -28,7 +29,7 @@ SimulatedPing Simulator::ping(const PingRequest& request) const {
   options.motion = request.motion;
   result.ping = tracer_.trace(request.T_world_sonar, options);
   const PingSetting setting{request.T_world_sonar, seed.child("surface").child(scene_name_),
-                            seed.child("device").child(receiver_.sonar.name), request.keys.ping};
+                            seed.child("device").child(receiver_.sonar.name), request.keys.ping, absorption_db_per_m_};
   result.images = form_images(receiver_, result.ping, settings, setting);
   return result;
 }

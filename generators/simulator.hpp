@@ -51,6 +51,7 @@ class Simulator {
   int mask_threshold_;
   RayScene rays_;
   Receiver receiver_;
+  double absorption_db_per_m_;
   PingTracer tracer_;
 };
 

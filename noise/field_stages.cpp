@@ -4,9 +4,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "ensonify/noise/random_row.hpp"
 #include "ensonify/noise/scatter_field.hpp"
+#include "ensonify/sensor_models/fan_pattern.hpp"
 #include "ensonify/sensor_models/receive_chain.hpp"
 
 namespace ensonify {
@@ -34,37 +36,49 @@ double elevation_integral_rad(const Aperture& elevation) {
   return sum * std::numbers::pi / steps;
 }
 
-/// Mean power of receiver noise and water in the cells of a bin, before the array.
-std::vector<float> white_power(const NoiseStage<double>& stage, const Receiver& receiver) {
+/// Mean power before the array, of bins times of beams.
+struct WhitePower {
+  std::vector<float> of_bin, of_beam;
+};
+
+/// Of receiver noise, of which every beam hears as much, or of the water's own echo.
+WhitePower white_power(const NoiseStage<double>& stage, const Receiver& receiver, double absorption_db_per_m) {
   const SonarModel& sonar = receiver.sonar;
   const SonarGeometry& g = sonar.geometry;
   std::vector<float> power(static_cast<std::size_t>(g.range_bins), 0.0f);
+  std::vector<float> across(static_cast<std::size_t>(g.beams()), 1.0f);
   if (const auto* noise = std::get_if<ReceiverNoise<double>>(&stage)) {
     const std::vector<float> gains = row_gains(sonar);
     const double before_tvg = power_of_db(noise->level_db) / static_cast<double>(gains.back());
     const double behind_tvg = power_of_db(noise->floor_db);
     for (int bin = 0; bin < g.range_bins; ++bin) {
-      power[bin] = static_cast<float>((before_tvg + behind_tvg / static_cast<double>(gains[bin])) /
-                                      receiver.coherent.noise_gain());
+      power[bin] = static_cast<float>(before_tvg + behind_tvg / static_cast<double>(gains[bin]));
+    }
+    for (std::size_t b = 0; b < across.size(); ++b) {
+      across[b] = static_cast<float>(1.0 / receiver.coherent.noise_gain()[b]);
     }
   }
   if (const auto* water = std::get_if<VolumeReverberation<double>>(&stage)) {
-    const double fan_rad = g.beam_azimuth_rad.front() - g.beam_azimuth_rad.back();
-    const double cell_rad = g.beams() > 1 ? fan_rad / (g.beams() - 1) : sonar.receive_azimuth.width_rad();
-    const double solid_angle = cell_rad * elevation_integral_rad(sonar.elevation);
+    const std::vector<double> edges = g.beam_edges_rad();
+    const FanPattern pattern(sonar);
+    const double arc = elevation_integral_rad(sonar.elevation);
+    for (std::size_t b = 0; b < across.size(); ++b) {
+      const double cell_rad = g.beams() > 1 ? edges[b] - edges[b + 1] : sonar.receive_azimuth.width_rad();
+      across[b] = static_cast<float>(cell_rad * arc * pattern(g.beam_azimuth_rad[b]));
+    }
     for (int bin = 0; bin < g.range_bins; ++bin) {
       const double r = g.bin_centre_m(bin);
       // Volume r^2 dr times solid angle, spreading r^-4.
-      power[bin] = static_cast<float>(power_of_db(water->strength_db) * solid_angle * g.bin_size_m() / (r * r) *
-                                      power_of_db(-2.0 * sonar.receive.tvg_absorption_db_per_m * r));
+      power[bin] = static_cast<float>(power_of_db(water->strength_db) * g.bin_size_m() / (r * r) *
+                                      power_of_db(-2.0 * absorption_db_per_m * r));
     }
   }
-  return power;
+  return {std::move(power), std::move(across)};
 }
 
-void add_scaled(const float* __restrict in, float factor, std::span<float> row) {
+void add_scaled(const float* __restrict in, const float* __restrict across, float factor, std::span<float> row) {
   float* __restrict out = row.data();
-  for (std::size_t b = 0; b < row.size(); ++b) out[b] += factor * in[b];
+  for (std::size_t b = 0; b < row.size(); ++b) out[b] += factor * across[b] * in[b];
 }
 
 /// Adds a copy of a row that lies `away` beams aside.
@@ -212,14 +226,16 @@ bool add_white_sources(const NoiseChain& chain, const Receiver& receiver, const 
       continue;
     }
     any = true;
-    const std::vector<float> row_power = white_power(stage, receiver);
+    const WhitePower power = white_power(stage, receiver, setting.absorption_db_per_m);
+    std::vector<float> across(beams);
+    for (std::size_t b = 0; b < beams; ++b) across[b] = std::sqrt(power.of_beam[b]);
     const RandomKey key = setting.ping.child(names[i]);
     for (int bin = 0; bin < field.real.rows(); ++bin) {
       uniform_row(key, static_cast<std::uint32_t>(bin), numbers);
       to_normal(numbers);
-      const float scale = std::sqrt(0.5f * row_power[bin]);
-      add_scaled(numbers.data(), scale, field.real.row(bin));
-      add_scaled(numbers.data() + beams, scale, field.imaginary.row(bin));
+      const float scale = std::sqrt(0.5f * power.of_bin[bin]);
+      add_scaled(numbers.data(), across.data(), scale, field.real.row(bin));
+      add_scaled(numbers.data() + beams, across.data(), scale, field.imaginary.row(bin));
     }
   }
   return any;
@@ -236,7 +252,8 @@ void disturb_field(const NoiseChain& chain, const Receiver& receiver, const Ping
 void add_leaked_power(const NoiseChain& chain, const Receiver& receiver, const Image2<float>& power,
                       Image2<float>& leaked) {
   if (const auto* arcs = chain.find<SidelobeArcs>()) {
-    const auto leak = static_cast<float>(power_of_db(arcs->level_db) * receiver.coherent.noise_gain());
+    const std::vector<double>& gain = receiver.coherent.noise_gain();
+    const auto leak = static_cast<float>(power_of_db(arcs->level_db) * gain[gain.size() / 2]);
     for (int first = 0; first < power.rows(); first += 8) {
       const int rows = std::min(8, power.rows() - first);
       const std::array<float, 8> sums = sums_of_rows(power.row(first).data(), rows, power.columns());

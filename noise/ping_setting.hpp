@@ -20,9 +20,10 @@ struct Receiver {
 /// What the noise of a ping depends on beside its echo.
 struct PingSetting {
   Pose T_world_sonar = Pose::Identity();
-  RandomKey surface{};  ///< of the place: scatterers stay where they are from ping to ping
-  RandomKey device{};   ///< of the instrument: what it does in every ping
-  RandomKey ping{};     ///< of this ping
+  RandomKey surface{};             ///< of the place: scatterers stay where they are from ping to ping
+  RandomKey device{};              ///< of the instrument: what it does in every ping
+  RandomKey ping{};                ///< of this ping
+  double absorption_db_per_m = 0;  ///< of the water, one way
 };
 
 }  // namespace ensonify

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "ensonify/core/lanes.hpp"
+#include "ensonify/sensor_models/fan_border.hpp"
 #include "ensonify/sensor_models/point_spread.hpp"
 
 namespace ensonify {
@@ -33,6 +34,10 @@ Image2<float> amplitude_band(const Aperture& aperture, const std::vector<double>
       band(d, b) = std::abs(offset) <= reach_sine ? static_cast<float>(aperture.amplitude(offset)) : 0.0f;
     }
   }
+  std::vector<double> gain = border_gain(
+      azimuth, reach, [&](double offset) { return std::abs(offset) <= reach_sine ? aperture.power(offset) : 0.0; });
+  for (double& g : gain) g = std::sqrt(g);
+  scale_beams(band, gain);
   return band;
 }
 
@@ -156,14 +161,15 @@ CoherentSpread::CoherentSpread(const SonarModel& sonar)
     : amplitude_(amplitude_band(sonar.receive_azimuth, sonar.geometry.beam_azimuth_rad)),
       sidelobe_power_(beyond_main_lobe(amplitude_, sonar.receive_azimuth, sonar.geometry.beam_azimuth_rad)),
       pulse_(pulse_amplitudes(sonar)) {
-  double beams = 0.0;
-  for (int d = 0; d < amplitude_.rows(); ++d) {
-    const auto a = static_cast<double>(amplitude_(d, amplitude_.columns() / 2));
-    beams += a * a;
-  }
   double range = 0.0;
   for (const float p : pulse_) range += static_cast<double>(p) * static_cast<double>(p);
-  noise_gain_ = beams * range;
+  noise_gain_.assign(static_cast<std::size_t>(amplitude_.columns()), 0.0);
+  for (int d = 0; d < amplitude_.rows(); ++d) {
+    for (std::size_t b = 0; b < noise_gain_.size(); ++b) {
+      const auto a = static_cast<double>(amplitude_(d, static_cast<int>(b)));
+      noise_gain_[b] += a * a * range;
+    }
+  }
 }
 
 ComplexField CoherentSpread::apply(const ComplexField& field) const {

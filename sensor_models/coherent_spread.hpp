@@ -21,14 +21,14 @@ class CoherentSpread {
   /// Mean power that the sidelobes receive from a layer of mean intensity: what `apply` gives beyond the main lobe.
   Image2<float> sidelobe_power(const Image2<float>& intensity) const;
 
-  /// Mean power of a middle beam for a field of unit mean power everywhere.
-  double noise_gain() const { return noise_gain_; }
+  /// Mean power of each beam for a field of unit mean power everywhere.
+  const std::vector<double>& noise_gain() const { return noise_gain_; }
 
  private:
   Image2<float> amplitude_;       ///< diagonal d of the band matrix in row d, as in PointSpread
   Image2<float> sidelobe_power_;  ///< squares of it, main lobe left out
   std::vector<float> pulse_;      ///< centre in the middle
-  double noise_gain_ = 1;
+  std::vector<double> noise_gain_;
 };
 
 }  // namespace ensonify

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "ensonify/sensor_models/fan_border.hpp"
+
 namespace ensonify {
 namespace {
 
@@ -38,10 +40,12 @@ std::vector<float> pulse_weights(double bin_m, double bandwidth_hz) {
 Image2<float> band_matrix(const Aperture& aperture, const std::vector<double>& azimuth) {
   const int beams = static_cast<int>(azimuth.size());
   const double lobe = aperture.main_lobe_sine();
-  const auto weight = [&](int from, int to) {
-    const double offset = std::sin(azimuth[from]) - std::sin(azimuth[to]);
+  const auto power_at = [&](double offset) {
     const double power = std::abs(offset) <= lobe ? aperture.power(offset) : 0.0;
-    return power < least_weight ? 0.0f : static_cast<float>(power);
+    return power < least_weight ? 0.0 : power;
+  };
+  const auto weight = [&](int from, int to) {
+    return static_cast<float>(power_at(std::sin(azimuth[from]) - std::sin(azimuth[to])));
   };
   int reach = 0;
   for (int b = 0; b < beams; ++b) {
@@ -53,6 +57,7 @@ Image2<float> band_matrix(const Aperture& aperture, const std::vector<double>& a
       band(d, b) = weight(b + d - reach, b);
     }
   }
+  scale_beams(band, border_gain(azimuth, reach, power_at));
   return band;
 }
 

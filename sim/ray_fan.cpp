@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "ensonify/core/error.hpp"
+#include "ensonify/sensor_models/fan_pattern.hpp"
 
 namespace ensonify {
 namespace {
@@ -86,7 +87,7 @@ RayFan::RayFan(const SonarModel& sonar) {
                     "million; lower rays.azimuth_per_beam, rays.elevation or beams.count",
                     sonar.name, sonar.geometry.beams(), rays_per_beam, elevation_rays, rays * 1e-6, max_rays * 1e-6));
   }
-  const double fan_edge = std::max(std::abs(edges.front()), std::abs(edges.back()));
+  const FanPattern pattern(sonar);
   for (int b = 0; b < sonar.geometry.beams(); ++b) {
     // A lone beam has no neighbours to share the fan with: it is as wide as its pattern.
     const bool alone = sonar.geometry.beams() == 1;
@@ -94,10 +95,9 @@ RayFan::RayFan(const SonarModel& sonar) {
     const double port = alone ? edges[b] + 0.5 * cell : edges[b];
     for (int k = 0; k < rays_per_beam; ++k) {
       const double theta = port - (k + 0.5) * cell / rays_per_beam;
-      const double off_axis = fan_edge > 0.0 ? theta / fan_edge : 0.0;
       columns.push_back({static_cast<float>(theta), static_cast<float>(std::cos(theta)),
                          static_cast<float>(std::sin(theta)), static_cast<float>(cell / rays_per_beam),
-                         static_cast<float>(std::pow(10.0, -0.1 * sonar.fan_edge_db * off_axis * off_axis))});
+                         static_cast<float>(pattern(theta))});
     }
   }
 }

@@ -135,9 +135,9 @@ TEST_F(Frames, TrajectoryIntoAnObjectIsAConfigErrorWithItsPlace) {
   EXPECT_THAT(error_of([&] { maker.pose(9); }),
               AllOf(HasSubstr("into"), HasSubstr("(-0.06, 0.00, -2.00) m"), HasSubstr("4.5 s after its start"),
                     HasSubstr("move its waypoints")));
-  // The check looks between the frames too: the cell that the block's side touches begins at -0.6.
+  // The check looks between the frames too: the block's first cell begins at -0.5.
   EXPECT_THAT(error_of([&] { maker.check_trajectory(0); }),
-              AnyOf(HasSubstr("(-0.60, 0.00"), HasSubstr("(-0.56, 0.00")));
+              AnyOf(HasSubstr("(-0.50, 0.00"), HasSubstr("(-0.46, 0.00")));
 }
 
 TEST_F(Frames, APathThatSlipsThroughBetweenItsFramesIsRefused) {

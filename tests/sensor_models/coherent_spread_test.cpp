@@ -125,5 +125,20 @@ TEST(CoherentSpread, EdgesOfTheImageSeeWhatItsMiddleSees) {
   }
 }
 
+// A beam at the border of the fan hears half of its lobe from beyond; of an even field it shows what the middle shows,
+// but for the spacing beyond the border, which goes on in angle where the fan is even in its sine.
+TEST(CoherentSpread, AnEvenFieldIsEvenToTheBorderOfTheFan) {
+  for (const Shading shading : {Shading::uniform, Shading::hann}) {
+    const SonarModel sonar = instrument(shading);
+    const CoherentSpread coherent(sonar);
+    const Image2<float> clean = PointSpread(sonar).apply(Image2<float>(201, beams, 1.0F));
+    for (int b = 0; b < beams; ++b) {
+      EXPECT_NEAR(static_cast<double>(clean(100, b) / clean(100, beams / 2)), 1.0, 1e-3) << b;
+      EXPECT_NEAR(coherent.noise_gain()[static_cast<std::size_t>(b)] / coherent.noise_gain()[beams / 2], 1.0, 1e-3)
+          << b;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace ensonify

@@ -61,6 +61,11 @@ void spread_footprints(int count, const float* __restrict range, const float* __
     upper = least(most(upper, least(r, above)), most(r, above));
     lower = lower < infinity ? lower : r;
     upper = upper < infinity ? upper : r;
+    // Where a surface ends, the tangent plane would go on: no farther than on the side where it is known to.
+    const float known_below = below < infinity ? std::abs(lower - r) : infinity;
+    const float known_above = above < infinity ? std::abs(upper - r) : infinity;
+    lower = below < infinity ? lower : least(most(lower, r - known_above), r + known_above);
+    upper = above < infinity ? upper : least(most(upper, r - known_below), r + known_below);
     const float tilt = std::abs(left[i]) / most(std::abs(slant[i]), 1e-20f);
     const float across = r * cosine[i] * width_rad * least(tilt * cosine[i], steepest_azimuth_slope);
     const float along = upper - lower;

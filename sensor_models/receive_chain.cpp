@@ -12,7 +12,8 @@ Image2<Grey> quantise_to(const Image2<float>& level, float full_scale) {
   const auto in = level.pixels();
   const auto out = grey.pixels();
   for (std::size_t i = 0; i < in.size(); ++i) {
-    out[i] = static_cast<Grey>(static_cast<int>(std::min(std::max(in[i], 0.0f), 1.0f) * full_scale + 0.5f));
+    // The constant comes first: of two numbers that do not compare, std::max gives its first, and NaN becomes 0.
+    out[i] = static_cast<Grey>(static_cast<int>(std::min(1.0f, std::max(0.0f, in[i])) * full_scale + 0.5f));
   }
   return grey;
 }
@@ -31,14 +32,16 @@ void apply_gamma(std::span<float> power, double gamma) {
 
 }  // namespace
 
-std::vector<float> row_gains(const SonarModel& sonar) {
+double gain_db(const SonarModel& sonar, double range_m) {
   const ReceiveChain& chain = sonar.receive;
+  return sonar.source_level_db + chain.tvg_spreading_db * std::log10(range_m) +
+         2.0 * chain.tvg_absorption_db_per_m * range_m - chain.saturation_level_db;
+}
+
+std::vector<float> row_gains(const SonarModel& sonar) {
   std::vector<float> gain(static_cast<std::size_t>(sonar.geometry.range_bins));
   for (int bin = 0; bin < sonar.geometry.range_bins; ++bin) {
-    const double r = sonar.geometry.bin_centre_m(bin);
-    const double gain_db = sonar.source_level_db + chain.tvg_spreading_db * std::log10(r) +
-                           2.0 * chain.tvg_absorption_db_per_m * r - chain.saturation_level_db;
-    gain[bin] = static_cast<float>(std::pow(10.0, gain_db / 10.0));
+    gain[bin] = static_cast<float>(std::pow(10.0, gain_db(sonar, sonar.geometry.bin_centre_m(bin)) / 10.0));
   }
   return gain;
 }
@@ -50,7 +53,7 @@ Image2<float> receive(const SonarModel& sonar, const Image2<float>& intensity) {
     const auto in = intensity.row(bin);
     const auto out = level.row(bin);
     const float gain = gains[bin];
-    for (std::size_t b = 0; b < out.size(); ++b) out[b] = std::min(gain * in[b], 1.0f);
+    for (std::size_t b = 0; b < out.size(); ++b) out[b] = std::min(1.0f, gain * in[b]);  // in this order NaN becomes 1
     apply_gamma(out, sonar.receive.gamma);
   }
   return level;

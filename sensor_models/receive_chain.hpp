@@ -5,6 +5,11 @@
 
 namespace ensonify {
 
+/// Gain of the receive chain at a range, in dB re full scale. It rises with range. Single precision holds +-380 dB:
+/// beyond `max_gain_db` too little is left for the echo itself and for a recipe's gain_db, and loading refuses.
+constexpr double max_gain_db = 300;
+double gain_db(const SonarModel& sonar, double range_m);
+
 /// Linear power gain (TVG, source level, full scale) of every range bin: echo * gain = (amplitude over full scale)^2.
 std::vector<float> row_gains(const SonarModel& sonar);
 

@@ -6,6 +6,7 @@
 
 #include "ensonify/config/reader.hpp"
 #include "ensonify/sensor_models/beam_table.hpp"
+#include "ensonify/sensor_models/receive_chain.hpp"
 #include "ensonify/sensor_models/sonar_model.hpp"
 
 namespace ensonify {
@@ -89,8 +90,26 @@ void read_pattern(Reader pattern, SonarModel& sonar) {
   pattern.finish();
 }
 
-ReceiveChain read_receive(Reader receive) {
-  ReceiveChain chain;
+/// Images are computed in single precision: a gain beyond it turns silence into NaN.
+void check_gain(const Reader& receive, const SonarModel& sonar) {
+  const SonarGeometry& g = sonar.geometry;
+  for (const int bin : {0, g.range_bins - 1}) {
+    const double range_m = g.bin_centre_m(bin);
+    const double gain = gain_db(sonar, range_m);
+    if (std::abs(gain) <= max_gain_db) continue;
+    receive.fail(
+        gain > 0 ? "tvg_absorption_db_per_m" : "saturation_level_db",
+        fmt::format("at {:.4g} m, within the window, source_level_db {} + tvg_spreading_db {} log10(r) + 2 "
+                    "tvg_absorption_db_per_m {} r - saturation_level_db {} gives a gain of {:.0f} dB; it must "
+                    "lie in [{}, {}] dB: {}",
+                    range_m, sonar.source_level_db, sonar.receive.tvg_spreading_db,
+                    sonar.receive.tvg_absorption_db_per_m, sonar.receive.saturation_level_db, gain, -max_gain_db,
+                    max_gain_db, gain > 0 ? "lower the TVG or shorten the range window" : "lower saturation_level_db"));
+  }
+}
+
+void read_receive(Reader receive, SonarModel& sonar) {
+  ReceiveChain& chain = sonar.receive;
   chain.tvg_spreading_db = receive.number("tvg_spreading_db", {0.0, 60.0});
   chain.tvg_absorption_db_per_m = receive.number("tvg_absorption_db_per_m", {0.0, 10.0});
   chain.saturation_level_db = receive.number("saturation_level_db", {0.0, 400.0});
@@ -98,7 +117,7 @@ ReceiveChain read_receive(Reader receive) {
   chain.bits = receive.integer_or("bits", 8, 8, 16);
   if (chain.bits != 8 && chain.bits != 16) receive.fail("bits", "must be 8 or 16");
   receive.finish();
-  return chain;
+  check_gain(receive, sonar);
 }
 
 }  // namespace
@@ -115,7 +134,7 @@ SonarModel load_sonar(const ConfigSource& source, const RangeWindow& window) {
   sonar.geometry.beam_azimuth_rad = read_beams(file.child("beams"));
   read_range(file.child("range"), window, sonar);
   read_pattern(file.child("pattern"), sonar);
-  sonar.receive = read_receive(file.child("receive"));
+  read_receive(file.child("receive"), sonar);
   if (file.has("rays")) {
     Reader rays = file.child("rays");
     sonar.rays.azimuth_rays_per_beam = rays.integer_or("azimuth_per_beam", 0, 0, 64);

@@ -56,6 +56,17 @@ TEST(ReceiveChain, GammaAndClipping) {
   EXPECT_NEAR(level(3, 0), 0.1F, 1e-6F);
 }
 
+// 200 + 2 * 20 * 10.5 - 160 = 460 dB is beyond single precision: the gain is infinite, and silence times it NaN.
+// Loading refuses such an instrument; a model that a program filled in by itself still gives levels in 0..1.
+TEST(ReceiveChain, LevelsAreNumbersAtAnyGain) {
+  const SonarModel model = sonar(0.0, 20.0, 0.5);
+  const Image2<float> level = receive(model, Image2<float>(1000, 1));
+  for (const float l : level.pixels()) ASSERT_TRUE(l >= 0.0F && l <= 1.0F) << l;
+  const Image2<float> nan(1, 1, std::nanf(""));
+  EXPECT_EQ(quantise(nan)(0, 0), 0);
+  EXPECT_EQ(quantise16(nan)(0, 0), 0);
+}
+
 // Round to nearest: grey k covers [(k - 1/2) / 255, (k + 1/2) / 255).
 TEST(Quantise, RoundsToNearestAndClips) {
   Image2<float> level(1, 8);

@@ -114,11 +114,16 @@ class BadSonar : public testing::Test {
 
   /// The bundled HF sonar with one text replaced; the message it is refused with, empty where it loads.
   std::string refusal(const std::string& from, const std::string& to, const RangeWindow& window = {}) {
+    return refusal({{from, to}}, window);
+  }
+  std::string refusal(const std::vector<std::pair<std::string, std::string>>& changes, const RangeWindow& window) {
     std::ifstream in(library_folder("sensor_models") / "oculus_m1200d_hf.yaml");
     std::string text{std::istreambuf_iterator<char>(in), {}};
-    const auto at = text.find(from);
-    if (at == std::string::npos) return "no such text in the sonar: " + from;
-    text.replace(at, from.size(), to);
+    for (const auto& [from, to] : changes) {
+      const auto at = text.find(from);
+      if (at == std::string::npos) return "no such text in the sonar: " + from;
+      text.replace(at, from.size(), to);
+    }
     std::ofstream(folder / "bad.yaml") << text;
     try {
       load_sonar((folder / "bad.yaml").string(), window);
@@ -148,6 +153,19 @@ TEST_F(BadSonar, IsRefusedWithItsRule) {
   EXPECT_THAT(refusal("gamma", "gamma", {6.0, {}, {}}), HasSubstr("must lie within the instrument's"));
   EXPECT_THAT(refusal("gamma", "gamma", {.range_min_m = 0.1, .range_max_m = 0.1001, .range_bins = 0}),
               HasSubstr("bins"));
+}
+
+// At 149.85 m (512 bins up to 150 m) 220 + 40 log10(r) + 2 * 1.4 r - 180 = 546.6 dB. At 0.1048 m (512 bins from 0.1 to
+// 5 m) 100 + 40 log10(r) + 2 * 1.4 r - 400 = -338.9 dB.
+TEST_F(BadSonar, GainThatSinglePrecisionDoesNotHold) {
+  using testing::HasSubstr;
+  EXPECT_EQ(refusal("tvg_absorption_db_per_m: 1.4 ", "tvg_absorption_db_per_m: 10 ", {0.1, 10.0, {}}), "");  // 279 dB
+  EXPECT_EQ(refusal("max_m: 10,", "max_m: 150,"), "");  // the window decides, not the instrument
+  const std::string loud = refusal("max_m: 10,", "max_m: 150,", {0.1, 150.0, {}});
+  EXPECT_THAT(loud, HasSubstr("receive.tvg_absorption_db_per_m: at 149.9 m"));
+  EXPECT_THAT(loud, HasSubstr("gives a gain of 547 dB; it must lie in [-300, 300] dB: lower the TVG or shorten"));
+  EXPECT_THAT(refusal({{"source_level_db: 220", "source_level_db: 100"}, {"level_db: 180", "level_db: 400"}}, {}),
+              HasSubstr("gives a gain of -339 dB"));
 }
 
 TEST_F(BadSonar, ListedBeams) {

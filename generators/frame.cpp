@@ -237,12 +237,12 @@ FramePose FrameMaker::pose(int index) const {
 
 SonarModel FrameMaker::sonar_for(int index) const {
   SampledValues unused;
-  return sonar_drawn(frame_key(index), unused);
+  return sonar_drawn(settings_key(locate(index)), unused);
 }
 
-SonarModel FrameMaker::sonar_drawn(RandomKey frame, SampledValues& sampled) const {
+SonarModel FrameMaker::sonar_drawn(RandomKey settings, SampledValues& sampled) const {
   if (!window_varies(recipe_)) return receiver_.sonar;
-  RandomSequence random(frame.child("range_max_m"));
+  RandomSequence random(settings.child("range_max_m"));
   const double range_max_m = sample(*recipe_.range_max_m, random);
   sampled.emplace_back("sonar.range_max_m", range_max_m);
   return load_sonar(recipe_.sonar, window_of(recipe_, range_max_m));
@@ -262,7 +262,7 @@ Frame FrameMaker::form(FramePose pose, const Keys& keys) const {
   Frame frame;
   frame.pose = std::move(pose);
   SampledValues& sampled = frame.pose.sampled;
-  frame.sonar = sonar_drawn(keys.frame, sampled);
+  frame.sonar = sonar_drawn(keys.settings, sampled);
 
   ImageSettings settings;
   settings.noise = sample_noise(noises_[static_cast<std::size_t>(frame.pose.noise)],

@@ -82,7 +82,7 @@ class FrameMaker {
   Frame form(FramePose pose, const Keys& keys) const;
   FramePose random_pose(FramePose frame, RandomKey key) const;
   int first_place_of(int split) const;
-  SonarModel sonar_drawn(RandomKey frame, SampledValues& sampled) const;
+  SonarModel sonar_drawn(RandomKey settings, SampledValues& sampled) const;
   Ping trace(const FramePose& pose, const SonarModel& sonar, const TraceOptions& options) const;
   RandomKey frame_key(int index) const;
   RandomKey settings_key(const FramePose& frame) const;

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <functional>
+#include <set>
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/generators/dataset_plan.hpp"
@@ -123,6 +124,24 @@ TEST_F(Frames, SameInAnyOrderAndAlone) {
   EXPECT_TRUE(frames[6].pose.T_world_sonar.translation().isApprox(Vec3(-2, -2, -2), 1e-9));
   EXPECT_TRUE(frames[10].pose.T_world_sonar.translation().isApprox(Vec3(-2, -1 - 5.0 / 16, -2), 1e-9));
   EXPECT_TRUE(frames[6].pose.T_world_sonar_est.isApprox(frames[6].pose.T_world_sonar, 1e-12));  // no drift at t = 0
+}
+
+// A range that jumped from ping to ping would give an instrument that nobody swims with, and a map's pings other cells.
+TEST_F(Frames, AnInstrumentKeepsItsWindowAlongATrajectory) {
+  write("way2.yaml",
+        "title: way2\n" + small_place + "waypoints:\n  - [-2, -2, -2, 0, 0, 0]\n  - [-2, 2, -2, 0, 0, 0]\n");
+  std::string text = head + "splits:\n" + random_split + swum_split;
+  text.replace(text.find("{uniform: [4, 6]}"), 17, "{uniform: [4, 9]}");
+  text.replace(text.find("frames: 5"), 9, "frames: 6");
+  text.replace(text.find("{scene: way.yaml}"), 17, "{scene: way.yaml}, {scene: way2.yaml}");
+  const FrameMaker maker(recipe(text), default_isa);
+  std::vector<double> range_max_m;
+  for (int i = 0; i < 12; ++i) range_max_m.push_back(maker.sonar_for(i).geometry.range_max_m);
+  EXPECT_EQ(std::set<double>(range_max_m.begin(), range_max_m.begin() + 6).size(), 6u);  // random poses: one each
+  EXPECT_EQ(std::set<double>(range_max_m.begin() + 6, range_max_m.begin() + 9).size(), 1u);
+  EXPECT_EQ(std::set<double>(range_max_m.begin() + 9, range_max_m.end()).size(), 1u);
+  EXPECT_NE(range_max_m[6], range_max_m[9]);
+  for (const int i : {1, 7, 11}) EXPECT_EQ(maker.make(i).sonar.geometry.range_max_m, range_max_m[i]) << i;
 }
 
 TEST_F(Frames, TrajectoryIntoAnObjectIsAConfigErrorWithItsPlace) {

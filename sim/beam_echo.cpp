@@ -36,6 +36,20 @@ inline void spread(const RayColumn& rays, int i, const RangeBins& bins, const Gi
   }
 }
 
+/// The rays that stand for the nominal elevation arc: [first, last). Where they stand so far apart that none lies in
+/// it, the one nearest to the axis does.
+struct Arc {
+  int first, last;
+};
+Arc nominal_arc(const RayFan::Rows& rows) {
+  if (rows.first_nominal < rows.last_nominal) return {rows.first_nominal, rows.last_nominal};
+  const auto& phi = rows.elevation_rad;
+  const auto nearest =
+      std::min_element(phi.begin(), phi.end(), [](float a, float b) { return std::abs(a) < std::abs(b); });
+  const auto i = static_cast<int>(nearest - phi.begin());
+  return {i, i + 1};
+}
+
 }  // namespace
 
 void add_energy(const RayColumn& rays, const RangeBins& bins, float* energy) {
@@ -69,8 +83,9 @@ void ShadowCount::clear() {
 }
 
 void ShadowCount::add(const RayColumn& rays, const RayFan::Rows& rows, const RangeBins& bins) {
-  rays_ += rows.last_nominal - rows.first_nominal;
-  for (int i = rows.first_nominal; i < rows.last_nominal; ++i) {
+  const Arc arc = nominal_arc(rows);
+  rays_ += arc.last - arc.first;
+  for (int i = arc.first; i < arc.last; ++i) {
     const float place = bins.place_of(rays.range_m[i + 1]);
     if (place < 0.0f)
       ++hits_before_window_;

@@ -66,6 +66,16 @@ TEST(Shadow, FloorUnderAPitchedSonar) {
   for (const int start : level.truth.shadow_start_bin) EXPECT_EQ(start, sonar.geometry.range_bins);
 }
 
+// Sixteen rays over the lobe of a uniform aperture that is 2 deg wide stand further apart than its field of view is
+// high: the ray nearest to the axis stands for the arc. In open water it ends nowhere, a wall takes it.
+TEST(Shadow, OfAnArcThatFallsBetweenTheRays) {
+  const SonarModel sonar = bare_sonar({.elevation_fov_deg = 2.0, .elevation = Shading::uniform, .elevation_rays = 16});
+  const Scene far_below = scene_of({floor_mesh(-500)});
+  for (const int start : ping_of(far_below, sonar).truth.shadow_start_bin) EXPECT_EQ(start, sonar.geometry.range_bins);
+  const Ping before_wall = ping_of(scene_of({wall_mesh({4.0, 0, 0}, {-1, 0, 0})}), sonar);
+  EXPECT_NEAR(before_wall.truth.shadow_start_bin[64], *sonar.geometry.bin_of(4.0) + 1, 1);
+}
+
 // A plate over the lower 40 % of the arc throws no shadow by the rule of the half, one over 60 % does.
 TEST(Shadow, NeedsHalfOfTheArc) {
   const SonarModel sonar = bare_sonar({.elevation_fov_deg = 20.0, .elevation_rays = 1024});

@@ -122,6 +122,39 @@ TriangleMesh flatten(const aiScene& scene, const Eigen::Matrix3d& to_metres_z_up
   return mesh;
 }
 
+constexpr std::string_view offset_cure =
+    "subtract an offset from its vertices (of a georeferenced mesh, the easting and northing of its corner)";
+
+void check_left_out(const Welded& welded, const std::string& file, std::vector<std::string>& warnings) {
+  const std::size_t left = welded.mesh.triangles.size();
+  const std::size_t all = welded.flat + welded.out_of_reach + left;
+  const std::string far = fmt::format(
+      "further than {:.0f} km from the origin or nowhere finite, where single "
+      "precision holds no shape; {}, or check `unit` and `scale`",
+      weld_reach_m * 1e-3f, offset_cure);
+  if (left == 0 && welded.out_of_reach > 0) {
+    throw DataError(fmt::format("{}: {} of {} triangles lie {}", file, welded.out_of_reach, all, far));
+  }
+  if (left == 0) throw DataError(fmt::format("{}: holds no triangle of any area", file));
+  if (welded.flat > 0) {
+    warnings.push_back(fmt::format("{}: {} of {} triangles have no area and are left out", file, welded.flat, all));
+  }
+  if (welded.out_of_reach > 0) {
+    warnings.push_back(
+        fmt::format("{}: {} of {} triangles are left out: they lie {}", file, welded.out_of_reach, all, far));
+  }
+}
+
+void warn_of_coarse_coordinates(const TriangleMesh& mesh, const std::string& file, std::vector<std::string>& warnings) {
+  constexpr float finest_needed_m = 1e-3f;
+  float largest_m = 0;
+  for (const Eigen::Vector3f& v : mesh.vertices_m) largest_m = std::max(largest_m, v.cwiseAbs().maxCoeff());
+  const float step_m = std::nextafter(largest_m, weld_reach_m * 2) - largest_m;
+  if (step_m <= finest_needed_m) return;
+  warnings.push_back(fmt::format("{}: has coordinates of {:.0f} m, which single precision rounds to {:.2g} mm; {}",
+                                 file, largest_m, step_m * 1e3f, offset_cure));
+}
+
 void warn_of_odd_size(const TriangleMesh& mesh, MeshFormat format, const MeshImportOptions& options,
                       const std::string& file, std::vector<std::string>& warnings) {
   // COLLADA and glTF state their unit; a user who gave unit or scale has thought of it.
@@ -166,11 +199,8 @@ TriangleMesh import_mesh(const fs::path& path, const MeshImportOptions& options,
         "{}: MeshLab marks every COLLADA file Y_UP; z is taken as up, give `up_axis: y` if it lies on its side", file));
   }
   const Welded welded = weld(flatten(*scene, metres_z_up(*scene, format, options), file));
-  if (welded.mesh.triangles.empty()) throw DataError(fmt::format("{}: holds no triangle of any area", file));
-  if (welded.dropped > 0) {
-    warnings.push_back(fmt::format("{}: {} of {} triangles have no area or no finite place and are left out", file,
-                                   welded.dropped, welded.dropped + welded.mesh.triangles.size()));
-  }
+  check_left_out(welded, file, warnings);
+  warn_of_coarse_coordinates(welded.mesh, file, warnings);
   warn_of_odd_size(welded.mesh, format, options, file, warnings);
   return welded.mesh;
 }

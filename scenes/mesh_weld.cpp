@@ -23,11 +23,9 @@ Bits bits_of(const Eigen::Vector3f& v) {
   return {bits(v.x()), bits(v.y()), bits(v.z())};
 }
 
-bool usable(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
-  constexpr float far_m = 1e6f;
-  for (const Eigen::Vector3f& v : {a, b, c}) {
-    if (!v.allFinite() || v.cwiseAbs().maxCoeff() > far_m) return false;
-  }
+bool in_reach(const Eigen::Vector3f& v) { return v.allFinite() && v.cwiseAbs().maxCoeff() <= weld_reach_m; }
+
+bool has_area(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
   const Eigen::Vector3d ab = (b - a).cast<double>(), ac = (c - a).cast<double>();
   return ab.cross(ac).squaredNorm() > 0;
 }
@@ -45,8 +43,12 @@ Welded weld(const TriangleMesh& mesh) {
   };
   for (const auto& [a, b, c] : mesh.triangles) {
     const auto &pa = mesh.vertices_m[a], &pb = mesh.vertices_m[b], &pc = mesh.vertices_m[c];
-    if (!usable(pa, pb, pc)) {
-      ++result.dropped;
+    if (!in_reach(pa) || !in_reach(pb) || !in_reach(pc)) {
+      ++result.out_of_reach;
+      continue;
+    }
+    if (!has_area(pa, pb, pc)) {
+      ++result.flat;
       continue;
     }
     const std::uint32_t ia = welded_index(pa), ib = welded_index(pb), ic = welded_index(pc);

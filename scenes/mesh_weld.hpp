@@ -6,9 +6,13 @@
 
 namespace ensonify {
 
+/// Single precision holds no shape further out: a step there is 6 cm.
+constexpr float weld_reach_m = 1e6f;
+
 struct Welded {
   TriangleMesh mesh;
-  std::size_t dropped = 0;  ///< triangles without area or with a coordinate that is not finite or beyond 1e6 m
+  std::size_t flat = 0;          ///< triangles dropped because they have no area
+  std::size_t out_of_reach = 0;  ///< dropped because a coordinate is not finite or beyond weld_reach_m
 };
 
 /// Joins vertices of equal coordinates and drops unusable triangles and unused vertices. Keeps the order.

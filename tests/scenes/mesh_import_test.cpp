@@ -1,5 +1,6 @@
 #include "ensonify/scenes/mesh_import.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -37,6 +38,24 @@ void expect_box(const Imported& imported, const Vec3& low_m, const Vec3& high_m)
   EXPECT_NEAR(enclosed_volume_m3(imported.mesh), volume, 1e-4 * volume) << "turned inside out";
   EXPECT_LT((imported.box_m.min() - low_m).norm(), 1e-5) << imported.box_m.min().transpose();
   EXPECT_LT((imported.box_m.max() - high_m).norm(), 1e-5) << imported.box_m.max().transpose();
+}
+
+/// The box with its corner at y = `north_m`.
+std::string moved_box_obj(float north_m) {
+  std::string text;
+  for (const auto& c : box_corners) text += fmt::format("v {} {} {}\n", c[0], c[1] + north_m, c[2]);
+  for (const auto& f : box_faces) text += fmt::format("f {} {} {}\n", f[0] + 1, f[1] + 1, f[2] + 1);
+  return text;
+}
+
+void expect_refused(const fs::path& file, const std::string& why = "") {
+  try {
+    import_file(file);
+    ADD_FAILURE() << file << " was taken";
+  } catch (const DataError& e) {
+    EXPECT_THAT(e.what(), HasSubstr(file.string()));
+    EXPECT_THAT(e.what(), HasSubstr(why));
+  }
 }
 
 const Vec3 origin = Vec3::Zero();
@@ -112,8 +131,27 @@ TEST(MeshImport, DropsFlatAndInfiniteTrianglesWithAWarning) {
   const Imported imported =
       import_file(scratch.write("box.obj", box_obj() + "v inf 0 0\nv nan 1 1\nf 1 1 2\nf 1 2 9\nf 2 3 10\n"));
   EXPECT_EQ(imported.mesh.triangles.size(), 12u);
-  ASSERT_EQ(imported.warnings.size(), 1u);
-  EXPECT_THAT(imported.warnings[0], HasSubstr("3 of 15 triangles"));
+  ASSERT_EQ(imported.warnings.size(), 2u);
+  EXPECT_THAT(imported.warnings[0], HasSubstr("1 of 15 triangles have no area"));
+  EXPECT_THAT(imported.warnings[1], HasSubstr("2 of 15 triangles are left out"));
+}
+
+// A northing of UTM: 4 200 000 m.
+TEST(MeshImport, SaysThatAGeoreferencedMeshIsTooFarNotFlat) {
+  const ScratchFolder scratch;
+  const fs::path far = scratch.write("utm.obj", moved_box_obj(4.2e6F));
+  expect_refused(far, "12 of 12 triangles lie further than 1000 km from the origin");
+  expect_refused(far, "subtract an offset");
+}
+
+// From 16384 m on neighbouring numbers of single precision are 2 mm apart, below that 1 mm.
+TEST(MeshImport, WarnsWhereSinglePrecisionIsCoarserThanAMillimetre) {
+  const ScratchFolder scratch;
+  EXPECT_TRUE(import_file(scratch.write("near.obj", moved_box_obj(16380))).warnings.empty());
+  const Imported far = import_file(scratch.write("far.obj", moved_box_obj(-16390)));
+  ASSERT_EQ(far.warnings.size(), 1u);
+  EXPECT_THAT(far.warnings[0], HasSubstr("coordinates of 16390 m, which single precision rounds to 2 mm"));
+  EXPECT_THAT(far.warnings[0], HasSubstr("subtract an offset"));
 }
 
 TEST(MeshImport, PolygonsBecomeTriangles) {
@@ -121,16 +159,6 @@ TEST(MeshImport, PolygonsBecomeTriangles) {
   const Imported imported =
       import_file(scratch.write("quad.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nl 1 2\np 3\n"));
   EXPECT_EQ(imported.mesh.triangles.size(), 2u);
-}
-
-void expect_refused(const fs::path& file, const std::string& why = "") {
-  try {
-    import_file(file);
-    ADD_FAILURE() << file << " was taken";
-  } catch (const DataError& e) {
-    EXPECT_THAT(e.what(), HasSubstr(file.string()));
-    EXPECT_THAT(e.what(), HasSubstr(why));
-  }
 }
 
 TEST(MeshImport, RefusesWhatIsNoMesh) {

@@ -28,21 +28,31 @@ Shading read_shading(Reader& reader, std::string_view key) {
   return names.at(reader.choice(key, choices));
 }
 
+/// The cell of a beam reaches halfway to its neighbours: without one it has no width in maps, views and what is
+/// observed.
+void check_beam_count(const Reader& beams, std::string_view key, std::size_t count) {
+  if (count >= 2 && count <= max_beams) return;
+  beams.fail(key,
+             fmt::format("must give 2 to {} beams, not {}: a beam's cell reaches halfway to the next one; in place of "
+                         "a lone beam give two, half its width apart",
+                         max_beams, count));
+}
+
 std::vector<double> read_beams(Reader beams) {
   const std::string spacing = beams.choice("spacing", {"uniform_angle", "uniform_sine", "listed"});
   std::vector<double> azimuth;
   if (spacing == "listed") {
     azimuth = beams.numbers("azimuth_deg", -1, {-89.5, 89.5});
-    if (azimuth.empty()) beams.fail("azimuth_deg", "an instrument needs at least one beam; list its azimuths");
-    if (azimuth.size() > max_beams) beams.fail("azimuth_deg", fmt::format("at most {} beams", max_beams));
+    check_beam_count(beams, "azimuth_deg", azimuth.size());
     std::transform(azimuth.begin(), azimuth.end(), azimuth.begin(), radians);
-    if (azimuth.size() > 1 && azimuth.front() < azimuth.back()) std::reverse(azimuth.begin(), azimuth.end());
+    if (azimuth.front() < azimuth.back()) std::reverse(azimuth.begin(), azimuth.end());
     if (!std::is_sorted(azimuth.rbegin(), azimuth.rend()) ||
         std::adjacent_find(azimuth.begin(), azimuth.end()) != azimuth.end()) {
       beams.fail("azimuth_deg", "must rise or fall strictly");
     }
   } else {
-    const int count = beams.integer("count", 1, max_beams);
+    const int count = beams.integer("count", 0, max_beams);
+    check_beam_count(beams, "count", static_cast<std::size_t>(count));
     const double fov = beams.angle_deg("azimuth_fov_deg", fan_width_deg);
     azimuth = spacing == "uniform_sine" ? uniform_sine_beams(count, fov) : uniform_angle_beams(count, fov);
   }

@@ -168,6 +168,20 @@ TEST_F(BadSonar, GainThatSinglePrecisionDoesNotHold) {
               HasSubstr("gives a gain of -339 dB"));
 }
 
+// A geometry tells the width of a beam's cell by its neighbours: a lone beam would leave maps, fan views and what pings
+// observe empty without a word.
+TEST_F(BadSonar, LoneBeam) {
+  using testing::HasSubstr;
+  EXPECT_THAT(refusal("count: 512", "count: 1"), HasSubstr("beams.count: must give 2 to 4096 beams, not 1"));
+  EXPECT_THAT(
+      refusal("{spacing: uniform_sine, count: 512, azimuth_fov_deg: 60}", "{spacing: listed, azimuth_deg: [3]}"),
+      HasSubstr("beams.azimuth_deg: must give 2 to 4096 beams, not 1"));
+  EXPECT_EQ(refusal("uniform_sine, count: 512, azimuth_fov_deg: 60", "uniform_angle, count: 2, azimuth_fov_deg: 0.2"),
+            "");
+  const SonarGeometry two = load_sonar((folder / "bad.yaml").string()).geometry;
+  EXPECT_NEAR(degrees(two.beam_edges_rad().front() - two.beam_edges_rad().back()), 0.4, 1e-9);
+}
+
 TEST_F(BadSonar, ListedBeams) {
   using testing::HasSubstr;
   const std::string table = "{spacing: uniform_sine, count: 512, azimuth_fov_deg: 60}";
@@ -176,7 +190,8 @@ TEST_F(BadSonar, ListedBeams) {
   EXPECT_NEAR(sonar.geometry.beam_azimuth_rad[2], radians(-15.0), 1e-12);
   EXPECT_EQ(refusal(table, "{spacing: listed, azimuth_deg: [-15, 10, 20]}"), "");  // rising: turned round
   EXPECT_NEAR(load_sonar((folder / "bad.yaml").string()).geometry.beam_azimuth_rad[0], radians(20.0), 1e-12);
-  EXPECT_THAT(refusal(table, "{spacing: listed, azimuth_deg: []}"), HasSubstr("at least one beam"));
+  EXPECT_THAT(refusal(table, "{spacing: listed, azimuth_deg: []}"),
+              HasSubstr("azimuth_deg: must give 2 to 4096 beams, not 0"));
   EXPECT_THAT(refusal(table, "{spacing: listed, azimuth_deg: [1, 3, 2]}"), HasSubstr("strictly"));
   EXPECT_THAT(refusal(table, "{spacing: listed, azimuth_deg: [1, 1]}"), HasSubstr("strictly"));
   EXPECT_THAT(refusal(table, "{spacing: listed, azimuth_deg: [100]}"), HasSubstr("must lie in"));

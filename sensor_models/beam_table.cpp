@@ -24,4 +24,13 @@ std::vector<double> uniform_sine_beams(int count, double fov_rad) {
   return azimuth;
 }
 
+BeamGap widest_gap(const std::vector<double>& azimuth_rad, double width_rad) {
+  BeamGap widest;
+  for (std::size_t b = 1; b < azimuth_rad.size(); ++b) {
+    const double gap = (std::sin(azimuth_rad[b - 1]) - std::sin(azimuth_rad[b])) / (2.0 * std::sin(0.5 * width_rad));
+    if (gap > widest.widths) widest = {static_cast<int>(b) - 1, gap};
+  }
+  return widest;
+}
+
 }  // namespace ensonify

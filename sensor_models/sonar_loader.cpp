@@ -15,6 +15,7 @@ namespace {
 constexpr int max_beams = 4096;
 constexpr int max_bins = 16384;
 constexpr int max_pixels = 1 << 24;  // a frame takes some 50 bytes a pixel while it is made
+constexpr double max_gap_widths = 3;
 constexpr Limits fan_width_deg{0.01, 179.0};
 
 Shading read_shading(Reader& reader, std::string_view key) {
@@ -91,6 +92,21 @@ void read_range(Reader range, const RangeWindow& window, SonarModel& sonar) {
   }
 }
 
+/// Rays fill the cell of a beam evenly, so that wide gaps between narrow beams would be heard as if they were not
+/// there.
+void check_gaps(const Reader& pattern, const SonarModel& sonar) {
+  const auto& azimuth = sonar.geometry.beam_azimuth_rad;
+  const BeamGap gap = widest_gap(azimuth, sonar.receive_azimuth.width_rad());
+  if (gap.widths <= max_gap_widths) return;
+  const auto b = static_cast<std::size_t>(gap.after_beam);
+  pattern.fail(
+      "azimuth_width_deg",
+      fmt::format("the beams at {:.4g} and {:.4g} deg lie {:.3g} widths apart; it must be at most {}, because a "
+                  "beam hears all of its cell, which reaches halfway to the next beam, at full gain: give more "
+                  "beams or wider ones",
+                  degrees(azimuth[b]), degrees(azimuth[b + 1]), gap.widths, max_gap_widths));
+}
+
 void read_pattern(Reader pattern, SonarModel& sonar) {
   sonar.receive_azimuth =
       Aperture(read_shading(pattern, "azimuth_shading"), pattern.angle_deg("azimuth_width_deg", fan_width_deg));
@@ -98,6 +114,7 @@ void read_pattern(Reader pattern, SonarModel& sonar) {
   sonar.elevation = Aperture(read_shading(pattern, "elevation_shading"), sonar.geometry.elevation_fov_rad);
   sonar.fan_edge_db = pattern.number_or("fan_edge_db", 0.0, {0.0, 60.0});
   pattern.finish();
+  check_gaps(pattern, sonar);
 }
 
 /// Images are computed in single precision: a gain beyond it turns silence into NaN.

@@ -182,14 +182,25 @@ TEST_F(BadSonar, LoneBeam) {
   EXPECT_NEAR(degrees(two.beam_edges_rad().front() - two.beam_edges_rad().back()), 0.4, 1e-9);
 }
 
+// Beams of 0.4 deg. Rays fill the cells between them at full gain, whatever the pattern says.
+TEST_F(BadSonar, BeamsFurtherApartThanThreeWidths) {
+  using testing::HasSubstr;
+  const std::string table = "{spacing: uniform_sine, count: 512, azimuth_fov_deg: 60}";
+  EXPECT_EQ(refusal(table, "{spacing: listed, azimuth_deg: [1.19, 0, -0.4]}"), "");
+  const std::string sparse = refusal(table, "{spacing: listed, azimuth_deg: [0.4, 0, -1.21]}");
+  EXPECT_THAT(sparse, HasSubstr("pattern.azimuth_width_deg: the beams at 0 and -1.21 deg lie 3.02 widths apart"));
+  EXPECT_THAT(sparse, HasSubstr("give more beams or wider ones"));
+  EXPECT_THAT(refusal("count: 512", "count: 40"), HasSubstr("3.67 widths apart"));  // 2 sin 30 / 39 in sin(azimuth)
+}
+
 TEST_F(BadSonar, ListedBeams) {
   using testing::HasSubstr;
   const std::string table = "{spacing: uniform_sine, count: 512, azimuth_fov_deg: 60}";
-  EXPECT_EQ(refusal(table, "{spacing: listed, azimuth_deg: [20, 10, -15]}"), "");
+  EXPECT_EQ(refusal(table, "{spacing: listed, azimuth_deg: [1, 0.5, -0.5]}"), "");
   const SonarModel sonar = load_sonar((folder / "bad.yaml").string());
-  EXPECT_NEAR(sonar.geometry.beam_azimuth_rad[2], radians(-15.0), 1e-12);
-  EXPECT_EQ(refusal(table, "{spacing: listed, azimuth_deg: [-15, 10, 20]}"), "");  // rising: turned round
-  EXPECT_NEAR(load_sonar((folder / "bad.yaml").string()).geometry.beam_azimuth_rad[0], radians(20.0), 1e-12);
+  EXPECT_NEAR(sonar.geometry.beam_azimuth_rad[2], radians(-0.5), 1e-12);
+  EXPECT_EQ(refusal(table, "{spacing: listed, azimuth_deg: [-0.5, 0.5, 1]}"), "");  // rising: turned round
+  EXPECT_NEAR(load_sonar((folder / "bad.yaml").string()).geometry.beam_azimuth_rad[0], radians(1.0), 1e-12);
   EXPECT_THAT(refusal(table, "{spacing: listed, azimuth_deg: []}"),
               HasSubstr("azimuth_deg: must give 2 to 4096 beams, not 0"));
   EXPECT_THAT(refusal(table, "{spacing: listed, azimuth_deg: [1, 3, 2]}"), HasSubstr("strictly"));

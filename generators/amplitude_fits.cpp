@@ -6,7 +6,7 @@
 #include <numeric>
 #include <vector>
 
-#include "ensonify/generators/gamma_function.hpp"
+#include "ensonify/core/gamma_function.hpp"
 
 namespace ensonify {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "ensonify/core/gamma_function.hpp"
 #include "ensonify/noise/random_row.hpp"
 
 namespace ensonify {
@@ -12,7 +13,7 @@ namespace {
 /// The gamma distribution of one shape.
 class Gamma {
  public:
-  explicit Gamma(double shape) : shape_(shape), log_gamma_(std::lgamma(shape)) {}
+  explicit Gamma(double shape) : shape_(shape), log_gamma_(log_gamma(shape)) {}
 
   /// ln x with P(shape, x) = Phi(z), from a guess near it: Newton's steps on the logarithm of the smaller tail, which
   /// is concave in ln x.
@@ -32,44 +33,20 @@ class Gamma {
   }
 
  private:
-  // Series and continued fraction (Press et al. 2007, 6.2): each tail by the one that converges.
+  // Each tail by the one of series and fraction that converges.
   double log_lower(double y, double log_density) const {
     const double x = std::exp(y);
-    return x < shape_ + 1.0 ? log_density + std::log(series(x)) : other(log_density + std::log(fraction(x)));
+    return x < shape_ + 1.0 ? log_density + log_series(x) : other(log_density + log_fraction(x));
   }
   double log_upper(double y, double log_density) const {
     const double x = std::exp(y);
-    return x < shape_ + 1.0 ? other(log_density + std::log(series(x))) : log_density + std::log(fraction(x));
+    return x < shape_ + 1.0 ? other(log_density + log_series(x)) : log_density + log_fraction(x);
   }
   static double other(double log_tail) { return std::log1p(-std::min(std::exp(log_tail), 1.0 - 1e-16)); }
+  double log_series(double x) const { return std::log(gamma_series(shape_, x, close)); }
+  double log_fraction(double x) const { return std::log(gamma_fraction(shape_, x, close)); }
 
-  double series(double x) const {
-    double term = 1.0 / shape_;
-    double sum = term;
-    for (int n = 1; n < 2000 && term > 1e-12 * sum; ++n) {
-      term *= x / (shape_ + n);
-      sum += term;
-    }
-    return sum;
-  }
-
-  double fraction(double x) const {
-    double b = x + 1.0 - shape_;
-    double c = 1e300;
-    double d = 1.0 / b;
-    double h = d;
-    for (int n = 1; n < 2000; ++n) {
-      const double an = -n * (n - shape_);
-      b += 2.0;
-      d = 1.0 / (an * d + b);
-      c = b + an / c;
-      const double step = d * c;
-      h *= step;
-      if (std::abs(step - 1.0) < 1e-12) break;
-    }
-    return h;
-  }
-
+  static constexpr double close = 1e-12;
   double shape_, log_gamma_;
 };
 

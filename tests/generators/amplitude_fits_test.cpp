@@ -6,8 +6,8 @@
 #include <cmath>
 #include <vector>
 
+#include "ensonify/core/gamma_function.hpp"
 #include "ensonify/core/random.hpp"
-#include "ensonify/generators/gamma_function.hpp"
 
 namespace ensonify {
 namespace {

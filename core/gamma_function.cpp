@@ -1,4 +1,4 @@
-#include "ensonify/generators/gamma_function.hpp"
+#include "ensonify/core/gamma_function.hpp"
 
 #include <math.h>
 
@@ -6,6 +6,11 @@
 #include <limits>
 
 namespace ensonify {
+namespace {
+
+constexpr int most_terms = 100'000;
+
+}  // namespace
 
 double log_gamma(double x) {
   int sign = 0;
@@ -20,21 +25,18 @@ double digamma(double x) {
   return below + std::log(x) - 0.5 / x - series;
 }
 
-double gamma_distribution(double a, double x) {
-  if (!(x > 0)) return 0;
-  constexpr double close = 1e-14;
-  constexpr int most_terms = 100'000;
-  const double scale = std::exp(a * std::log(x) - x - log_gamma(a));
-  if (x < a + 1) {
-    double term = 1 / a, sum = term;
-    for (int n = 1; n < most_terms && term > close * sum; ++n) {
-      term *= x / (a + n);
-      sum += term;
-    }
-    return scale * sum;
+double gamma_series(double a, double x, double close) {
+  double term = 1 / a, sum = term;
+  for (int n = 1; n < most_terms && term > close * sum; ++n) {
+    term *= x / (a + n);
+    sum += term;
   }
+  return sum;
+}
+
+double gamma_fraction(double a, double x, double close) {
   // Lentz's method, as modified by Thompson and Barnett (1986).
-  constexpr double tiny = std::numeric_limits<double>::min() / close;
+  const double tiny = std::numeric_limits<double>::min() / close;
   double b = x + 1 - a, c = 1 / tiny, d = 1 / b, fraction = d;
   for (int n = 1; n < most_terms; ++n) {
     const double numerator = -n * (n - a);
@@ -45,7 +47,14 @@ double gamma_distribution(double a, double x) {
     fraction *= d * c;
     if (std::abs(d * c - 1) < close) break;
   }
-  return 1 - scale * fraction;
+  return fraction;
+}
+
+double gamma_distribution(double a, double x) {
+  if (!(x > 0)) return 0;
+  constexpr double close = 1e-14;
+  const double scale = std::exp(a * std::log(x) - x - log_gamma(a));
+  return x < a + 1 ? scale * gamma_series(a, x, close) : 1 - scale * gamma_fraction(a, x, close);
 }
 
 }  // namespace ensonify

@@ -66,6 +66,13 @@ void run(const Arguments& arguments) {
   watch_signals();
   ProgressLine progress(parse_progress_style(arguments.progress));
   options.on_progress = [&](const Progress& p) { progress.show(p.stage, p.done, p.fresh, p.total); };
+  options.on_lost = [&](const std::string& file) {
+    fmt::print(
+        std::cerr,
+        "ensonify: {0}/{1}: gone or cut short since the set was finished; files that are not there in full are made "
+        "again. What else changed is found by: ensonify verify {0}\n",
+        arguments.out, file);
+  };
   options.stopped = [] { return caught_signal() != 0; };
   switch (generate(recipe, options)) {
     case Outcome::complete:

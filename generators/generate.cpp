@@ -11,6 +11,7 @@
 #include "ensonify/core/error.hpp"
 #include "ensonify/core/parallel.hpp"
 #include "ensonify/generators/finish_dataset.hpp"
+#include "ensonify/generators/lost_files.hpp"
 #include "ensonify/generators/write_block.hpp"
 #include "ensonify/output/atomic_file.hpp"
 
@@ -88,10 +89,15 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
   const DatasetPaths paths{options.out};
   const FolderLock in_use = prepare_dataset(paths, plan_json(maker, options.isa, options.format), options.force);
   std::error_code no_throw;
-  if (std::filesystem::is_regular_file(paths.manifest(), no_throw)) return Outcome::complete;
+  const std::vector<Block> blocks = plan_blocks(recipe, options.format);
+  if (std::filesystem::is_regular_file(paths.manifest(), no_throw)) {
+    const std::optional<std::string> lost = lost_file(paths, blocks);
+    if (!lost) return Outcome::complete;
+    options.on_lost(*lost);
+    std::filesystem::remove(paths.manifest(), no_throw);  // until they are made again, the set is not complete
+  }
   check_trajectories(maker);
 
-  const std::vector<Block> blocks = plan_blocks(recipe, options.format);
   std::vector<Block> missing;
   Progress progress;
   for (const Block& block : blocks) {

@@ -24,6 +24,8 @@ struct GenerateOptions {
   std::string isa = default_isa;
   std::string command_line;
   std::function<void(const Progress&)> on_progress = [](const Progress&) {};
+  /// The set was finished, but this file of it is gone or cut short: what is missing is made again.
+  std::function<void(const std::string& file)> on_lost = [](const std::string&) {};
   std::function<bool()> stopped = [] { return false; };
 };
 
@@ -37,8 +39,8 @@ enum class Outcome {
 std::string command_line_of(const std::string& recipe_source, const Recipe& recipe, const std::string& isa,
                             SampleFormat format, int pairs);
 
-/// Makes a dataset, or what is missing of it. Frames that can not be made are listed in failed.jsonl in the state
-/// folder, the others are made, then DataError. Throws ConfigError and DataError.
+/// Makes a dataset, or what is missing of it, of a finished one too. Frames that can not be made are listed in
+/// failed.jsonl in the state folder, the others are made, then DataError. Throws ConfigError and DataError.
 Outcome generate(const Recipe& recipe, const GenerateOptions& options);
 
 /// Writes the files of one frame only, into the same places; returns its metadata line.

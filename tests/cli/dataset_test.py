@@ -171,6 +171,21 @@ class Again(ProgramTest):
         self.assertEqual(before, after)
         self.assertEqual(self.succeed("verify", "out").stdout, told)
 
+    def test_what_is_gone_of_a_complete_set_is_named_and_made_again(self):
+        out = self.generate("out")
+        whole = {p: p.read_bytes() for p in out.rglob("*") if p.is_file() and ".ensonify" not in p.parts}
+        kept = (out / "train/raw/000020.png").stat().st_ino
+        for name, spoil in [("train/raw/000003.png", lambda p: p.unlink()), ("grids/block.bt", lambda p: p.unlink()),
+                            ("checksums.txt", lambda p: p.unlink()),
+                            ("test/mask/000001.png", lambda p: p.write_bytes(p.read_bytes()[:-1]))]:
+            spoil(out / name)
+            told = self.succeed("generate", "small.yaml", "--out", "out", "--progress", "none").stderr
+            self.assertIn(f"out/{name}: gone or cut short", told)
+            self.assertIn("ensonify verify out", told)
+            self.assertEqual({p for p, data in whole.items() if p.read_bytes() != data}, set(), name)
+            self.succeed("verify", "out")
+        self.assertEqual((out / "train/raw/000020.png").stat().st_ino, kept, "a whole block was made again")
+
     def test_a_set_of_another_seed_is_refused_and_replaced_by_force(self):
         out = self.generate("out")
         first = manifest(out)["root_hash"]

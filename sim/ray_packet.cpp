@@ -5,16 +5,20 @@
 namespace ensonify {
 namespace {
 
+/// Where the instruction set has no packets of eight, Embree passes over the mask, and goes by tnear <= tfar alone: a
+/// lane that is not valid is an empty ray as well, whatever its place in the packet holds.
 void fill(const RayPacket& packet, const std::array<float, packet_lanes>& reach, RTCRay8& ray, int* valid) {
   for (int l = 0; l < packet_lanes; ++l) {
-    ray.org_x[l] = packet.origin[l].x();
-    ray.org_y[l] = packet.origin[l].y();
-    ray.org_z[l] = packet.origin[l].z();
-    ray.dir_x[l] = packet.direction[l].x();
-    ray.dir_y[l] = packet.direction[l].y();
-    ray.dir_z[l] = packet.direction[l].z();
+    const Eigen::Vector3f origin = packet.valid[l] ? packet.origin[l] : Eigen::Vector3f::Zero();
+    const Eigen::Vector3f direction = packet.valid[l] ? packet.direction[l] : Eigen::Vector3f::UnitX();
+    ray.org_x[l] = origin.x();
+    ray.org_y[l] = origin.y();
+    ray.org_z[l] = origin.z();
+    ray.dir_x[l] = direction.x();
+    ray.dir_y[l] = direction.y();
+    ray.dir_z[l] = direction.z();
     ray.tnear[l] = 0.0f;
-    ray.tfar[l] = reach[l];
+    ray.tfar[l] = packet.valid[l] ? reach[l] : -1.0f;
     ray.time[l] = 0.0f;
     ray.mask[l] = ~0u;
     ray.id[l] = 0;

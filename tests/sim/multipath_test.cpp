@@ -10,6 +10,7 @@
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/core/parallel.hpp"
+#include "ensonify/sim/ray_packet.hpp"
 #include "support/image_source.hpp"
 #include "support/meshes.hpp"
 #include "support/pings.hpp"
@@ -58,6 +59,56 @@ TEST(Multipath, OrderZeroIsNoLayerAndNoneChangesTheDirectEcho) {
   EXPECT_EQ(third.echo.multipath.rows(), third.echo.direct.rows());
   EXPECT_EQ(third.echo.multipath.columns(), third.echo.direct.columns());
   EXPECT_TRUE(same_bits(none.echo.direct, third.echo.direct));
+}
+
+// Machines without AVX2 get the same paths but for the last bits of their ranges, which move single paths to others.
+TEST(Multipath, EveryInstructionSetFindsTheSameEnergy) {
+  const Scene scene = load_scene("test_tank");
+  const SonarModel sonar = load_sonar("oculus_m1200d_hf");
+  const auto energy = [&](const char* isa) {
+    const RayScene rays(scene, isa);
+    const PingTracer tracer(rays, sonar, scene.water);
+    double sum = 0.0;
+    for (const std::size_t i : {std::size_t{3}, std::size_t{9}}) {
+      sum += sum_of(tracer.trace(scene.waypoints.at(i), {.multipath_order = 3}).echo.multipath);
+    }
+    return sum;
+  };
+  const double wanted = energy("avx2");
+  ASSERT_GT(wanted, 0.0);
+  for (const char* isa : {"sse4.2", "sse2"}) EXPECT_NEAR(energy(isa), wanted, 0.01 * wanted) << isa;
+}
+
+// A lane that is not valid may hold anything; Embree's sets without packets of eight pass over the mask.
+TEST(Multipath, LanesThatAreNotValidAreNotCast) {
+  const Scene scene = scene_of({floor_mesh(-1.0)});
+  const float nan = std::nanf("");
+  for (const char* isa : {"avx2", "sse4.2", "sse2"}) {
+    SCOPED_TRACE(isa);
+    const RayScene rays(scene, isa);
+    RayPacket packet;
+    packet.origin.fill({nan, nan, nan});
+    packet.direction.fill({nan, nan, nan});
+    packet.reach_m.fill(10.0F);
+    for (const int lane : {0, 5}) {
+      packet.valid[lane] = true;
+      packet.origin[lane] = {0.25F, 0.5F, 0.0F};
+      packet.direction[lane] = {0.0F, 0.0F, -2.0F};
+    }
+    packet.direction[6] = packet.direction[5];  // would be blocked as well
+    packet.origin[6] = packet.origin[5];
+    const auto blocked = packet.occluded(rays);
+    for (int lane = 0; lane < packet_lanes; ++lane) EXPECT_EQ(blocked[lane], packet.valid[lane]) << lane;
+
+    for (Eigen::Vector3f& direction : packet.direction) direction *= 0.5F;
+    const auto hits = packet.intersect(rays, true);
+    for (int lane = 0; lane < packet_lanes; ++lane) {
+      EXPECT_EQ(hits[lane].surface, packet.valid[lane] ? 0 : -1) << lane;
+      if (packet.valid[lane]) {
+        EXPECT_NEAR(hits[lane].distance_m, 1.0F, 1e-5F) << lane;
+      }
+    }
+  }
 }
 
 // A plane sends nothing to itself.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <map>
 #include <numeric>
+#include <optional>
 #include <set>
 #include <string_view>
 
@@ -89,6 +90,29 @@ std::vector<std::string> read_noise(Reader& file) {
   return profiles;
 }
 
+/// Why a split can not have its number of frames, and the key whose rule that is.
+struct FramesFault {
+  const char* key;
+  std::string rule;
+};
+
+std::optional<FramesFault> frames_fault(const Split& split) {
+  const auto* trajectory = std::get_if<TrajectoryPoses>(&split.poses);
+  if (trajectory == nullptr) return std::nullopt;
+  const int places = static_cast<int>(split.places.size());
+  if (const int over = split.frames % places; over != 0) {
+    const int less = split.frames - over;
+    return FramesFault{"frames", fmt::format("must be a multiple of the {} places of a trajectory split, such as {}",
+                                             places, less > 0 && 2 * over < places ? less : less + places)};
+  }
+  if (split.frames / places / trajectory->rate_hz > longest_drift_s) {
+    return FramesFault{"trajectory", fmt::format("takes longer than the {:.0f} s that the drift is modelled for; ask "
+                                                 "for fewer frames or a higher rate_hz",
+                                                 longest_drift_s)};
+  }
+  return std::nullopt;
+}
+
 Split read_split(const std::string& name, Reader split) {
   Split result;
   result.name = name;
@@ -100,20 +124,11 @@ Split read_split(const std::string& name, Reader split) {
     result.frames = split.integer("frames", 1, max_frames);
   }
   if (split.has("trajectory")) {
-    const TrajectoryPoses trajectory = read_trajectory(split.child("trajectory"));
-    const int places = static_cast<int>(result.places.size());
-    if (result.frames % places != 0) {
-      split.fail("frames", fmt::format("must be a multiple of the {} places of a trajectory split", places));
-    }
-    if (result.frames / places / trajectory.rate_hz > longest_drift_s) {
-      split.fail("trajectory", fmt::format("takes longer than the {:.0f} s that the drift is modelled for; ask for "
-                                           "fewer frames or a higher rate_hz",
-                                           longest_drift_s));
-    }
-    result.poses = trajectory;
+    result.poses = read_trajectory(split.child("trajectory"));
   } else {
     result.poses = read_random_poses(split.child("random_poses"));
   }
+  if (const auto fault = frames_fault(result)) split.fail(fault->key, fault->rule);
   split.finish();
   return result;
 }
@@ -192,8 +207,16 @@ Recipe load_recipe(const ConfigSource& source) {
 }
 
 void set_training_pairs(Recipe& recipe, int pairs) {
-  if (recipe.splits.front().name != "train") throw ConfigError("pairs: the recipe has no split 'train'");
-  recipe.splits.front().frames = pairs;
+  const auto refuse = [&](const std::string& rule) { throw ConfigError(fmt::format("pairs {}: {}", pairs, rule)); };
+  Split& train = recipe.splits.front();
+  if (train.name != "train") refuse("the recipe has no split 'train'");
+  const int others = recipe.frames() - train.frames;
+  if (pairs < 1 || pairs > max_frames - others) {
+    refuse(fmt::format("must lie in [1, {}]: a dataset has at most {} frames, the other splits {}", max_frames - others,
+                       max_frames, others));
+  }
+  train.frames = pairs;
+  if (const auto fault = frames_fault(train)) refuse(fmt::format("the split train: {}: {}", fault->key, fault->rule));
 }
 
 }  // namespace ensonify

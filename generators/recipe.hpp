@@ -65,7 +65,8 @@ struct Recipe {
 /// Throws ConfigError, also where two splits share a place; DataError where a trajectory file is broken.
 Recipe load_recipe(const ConfigSource& source);
 
-/// Other than the recipe's own number of training frames. Throws ConfigError where it has no split `train`.
+/// Other than the recipe's own number of training frames. Throws ConfigError where it has no split `train`, or where
+/// the split could not have been read with that number.
 void set_training_pairs(Recipe& recipe, int pairs);
 
 }  // namespace ensonify

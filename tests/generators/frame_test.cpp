@@ -313,6 +313,29 @@ TEST_F(Recipes, WhatAPlaceDoesNotHaveIsNamedWithTheLineOfTheRecipe) {
               HasSubstr("comes within 10 m"));
 }
 
+TEST_F(Recipes, PairsKeepTheRulesOfFrames) {
+  const auto said = [&](std::string split, int pairs) {
+    split.replace(split.find("test:"), 5, "train:");
+    Recipe r = recipe(head + "splits:\n" + split + "  val:\n    frames: 2\n    places: [{scene: a.yaml}]\n" +
+                      "    random_poses: {}\n");
+    return error_of([&] { set_training_pairs(r, pairs); });
+  };
+  std::string two = swum_split;
+  two.replace(two.find("frames: 5"), 9, "frames_per_place: 4");
+  two.replace(two.find("[{scene: way.yaml}]"), 19, "[{scene: way.yaml, layouts: [0, 1]}]");
+  EXPECT_EQ(said(two, 2), "");
+  for (const int pairs : {1, 7}) {
+    EXPECT_THAT(said(two, pairs), AllOf(HasSubstr("pairs " + std::to_string(pairs)),
+                                        HasSubstr("multiple of the 2 places of a trajectory split")));
+  }
+  EXPECT_THAT(said(two, 1), HasSubstr("such as 2"));
+  EXPECT_THAT(said(two, 524400), HasSubstr("longer than the 131072 s"));
+  EXPECT_THAT(said(two, 0), HasSubstr("must lie in [1, 99999998]"));
+  EXPECT_THAT(said(two, 100'000'000), AllOf(HasSubstr("at most 100000000 frames"), HasSubstr("the other splits 2")));
+  Recipe swum = recipe(head + "splits:\n" + swum_split);
+  EXPECT_THAT(error_of([&] { set_training_pairs(swum, 5); }), HasSubstr("pairs 5: the recipe has no split 'train'"));
+}
+
 // 10^8 frames in each of 30 layouts is more than an int holds.
 TEST_F(Recipes, FramesPerPlaceDoNotOverflow) {
   const std::string layouts =

@@ -187,6 +187,10 @@ void run(const Arguments& a) {
       fs::is_directory(a.output) ? fs::path(a.output) / fs::path(a.input).filename() : fs::path(a.output);
   if (!is_grey_file(output))
     throw ConfigError(fmt::format("{}: an image must end in .png, .exr or .npy", output.string()));
+  std::error_code no_throw;
+  if (fs::equivalent(a.input, output, no_throw)) {
+    throw ConfigError(fmt::format("{}: would overwrite its own input; name another file", output.string()));
+  }
   write_unbroken(output.parent_path(), [&] { filter_file(work, a.input, output); });
 }
 

@@ -117,6 +117,14 @@ class Images(ProgramTest):
             self.refuse(2, fragments, "filter", *words)
         self.assertFalse((self.folder / "o.npy").exists())
 
+    def test_no_image_is_overwritten_by_what_becomes_of_it(self):
+        write_grey(self.folder / "in.png", numpy.rint(speckled()).astype(numpy.uint8))
+        (self.folder / "link.png").symlink_to("in.png")
+        before = files(self.folder)
+        for output in ("in.png", "./in.png", ".", "link.png"):
+            self.refuse(2, ["would overwrite its own input"], "filter", "median", "in.png", output)
+        self.assertEqual(files(self.folder), before)
+
     def test_broken_inputs(self):
         bad = speckled()
         bad[3, 7] = numpy.nan

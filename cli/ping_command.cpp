@@ -14,6 +14,7 @@
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/fan_view.hpp"
 #include "ensonify/output/png.hpp"
+#include "ensonify/sensor_models/receive_chain.hpp"
 
 namespace ensonify::cli {
 namespace {
@@ -85,7 +86,8 @@ void run(const Arguments& a) {
   for (std::size_t i = 0; i < scene.instances.size(); ++i) record["instances"].push_back(scene.instances[i].name);
   const std::filesystem::path out = a.out;
   write_unbroken(out, [&, &ping = ping, &images = images] {
-    write_file(out / "raw.png", encode_png(images.raw.grey));
+    write_file(out / "raw.png",
+               sonar.receive.bits == 16 ? encode_png(quantise16(images.raw.level)) : encode_png(images.raw.grey));
     write_file(out / "clean.png", encode_png(images.clean.grey));
     write_file(out / "mask.png", encode_png(images.mask));
     write_file(out / "labels.png", encode_png(images.labels));

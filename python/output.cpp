@@ -85,8 +85,25 @@ void save_png(const std::filesystem::path& path, const py::object& image) {
   write_file(path, bytes);
 }
 
+/// Levels on the scale 0..255, of pixels of 8 or 16 bits.
+Image2<std::uint8_t> eight_bits(const py::object& image) {
+  if (!py::isinstance<py::array_t<std::uint16_t>>(image)) {
+    if (py::isinstance<py::array>(image) && !py::isinstance<py::array_t<std::uint8_t>>(image)) {
+      throw py::type_error(fmt::format("image must have dtype uint8 or uint16, not {}",
+                                       py::str(image.attr("dtype")).cast<std::string>()));
+    }
+    return image_from(require_array<std::uint8_t>(image, "image", 2));
+  }
+  const auto fine = image_from(require_array<std::uint16_t>(image, "image", 2));
+  Image2<std::uint8_t> coarse(fine.rows(), fine.columns());
+  constexpr int levels = 257;  // of 16 bits in one of 8: 65535 becomes 255
+  std::transform(fine.pixels().begin(), fine.pixels().end(), coarse.pixels().begin(),
+                 [](std::uint16_t v) { return static_cast<std::uint8_t>((v + levels / 2) / levels); });
+  return coarse;
+}
+
 py::array fan_of(const py::object& image, const SonarModel& sonar, int height) {
-  const auto pixels = image_from(require_array<std::uint8_t>(image, "image", 2));
+  const Image2<std::uint8_t> pixels = eight_bits(image);
   if (pixels.rows() != sonar.geometry.range_bins || pixels.columns() != sonar.geometry.beams()) {
     throw py::value_error(fmt::format("image must be {} bins x {} beams, as the sonar has, not {} x {}",
                                       sonar.geometry.range_bins, sonar.geometry.beams(), pixels.rows(),
@@ -174,7 +191,8 @@ void bind_output(py::module_& m) {
   m.def("save_png", &save_png, py::arg("path"), py::arg("image"),
         "uint8 or uint16 [height, width], or uint8 [height, width, 3]; whole or not at all.");
   m.def("fan_view", &fan_of, py::arg("image"), py::arg("sonar"), py::arg("height") = 720,
-        "uint8 [height, width]: the image as an operator sees it, forward up. `image`: uint8 [bins, beams].");
+        "uint8 [height, width]: the image as an operator sees it, forward up. `image`: uint8 or uint16\n"
+        "[bins, beams].");
   m.def("polar_view", &polar_of, py::arg("fan"), py::arg("sonar"),
         "float32 [bins, beams] of such a view (float32 [height, width], the sonar at the middle of its lower edge, "
         "range_max "

@@ -9,7 +9,7 @@ import struct
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from support import ProgramTest, RECIPE, SCENE, SONAR, files, leftovers, main, manifest
+from support import ProgramTest, RECIPE, SCENE, SONAR, files, leftovers, main, manifest, read_grey
 
 COMMANDS = ["", "evaluate", "evaluate filters", "evaluate map", "explore", "filter", "generate", "map", "ping", "reproduce", "scene",
             "scene list", "scene check", "scene show", "scene export", "sonar", "sonar list", "sonar check", "sonar show",
@@ -385,6 +385,17 @@ class Output(ProgramTest):
         record = json.loads((self.folder / "a/ping.json").read_text())
         self.assertEqual(record["T_world_sonar"][0][3], -4)
         self.assertEqual(leftovers(self.folder), [])
+
+    def test_ping_keeps_the_bits_of_the_receiver(self):
+        self.write("fine.yaml", SONAR.replace("gamma: 0.5", "gamma: 0.5\n  bits: 16"))
+        pose = ("--pose", "-4 -4 -2 0 10 45")
+        self.succeed("ping", "block.yaml", "--sonar", "fine.yaml", *pose, "--out", "fine")
+        self.succeed("ping", "block.yaml", "--sonar", "small_sonar.yaml", *pose, "--out", "coarse")
+        fine, coarse = (read_grey(self.folder / name / "raw.png").astype(float) for name in ("fine", "coarse"))
+        self.assertEqual(json.loads((self.folder / "fine/ping.json").read_text())["sonar"]["receive"]["bits"], 16)
+        self.assertGreater(fine.max(), 255)
+        self.assertLessEqual(abs(fine / 257 - coarse).max(), 0.5 + 1e-9)
+        self.assertEqual(read_grey(self.folder / "fine/clean.png").dtype.itemsize, 1)
 
     def test_progress_for_machines_is_a_json_object_a_line(self):
         done = self.succeed("generate", "small.yaml", "--out", "out", "--progress", "json")

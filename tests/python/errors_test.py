@@ -63,6 +63,7 @@ class Wrong(ModuleTest):
         self.refuse(ValueError, "one size", lambda: ensonify.score_mask(GREY, GREY[:8]))
         self.refuse(ensonify.DataError, "16", lambda: ensonify.Mapper([[-1, -1, -1], [1, 1, 1]], 0.1).add(GREY, self.sonar(), POSE))
         self.refuse(ValueError, "128 bins x 48 beams", lambda: ensonify.fan_view(GREY, self.sonar()))
+        self.refuse(TypeError, "uint8 or uint16, not float32", lambda: ensonify.fan_view(GREY.astype("f4"), self.sonar()))
         self.refuse(ValueError, "height, width, 3", lambda: ensonify.save_png(self.folder / "a.png", numpy.zeros((4, 4, 4), "u1")))
 
     def test_read_only_images_are_read(self):

@@ -146,6 +146,9 @@ class Pictures(ModuleTest):
         ping = self.simulator().ping(POSE)
         fan = ensonify.fan_view(ping.raw, ping.sonar)
         self.assertSameBits(fan, read_grey(self.folder / "ping/fan.png"))
+        fine = ping.raw.astype(numpy.uint16) * 257
+        self.assertSameBits(ensonify.fan_view(fine, ping.sonar), fan)
+        self.assertSameBits(ensonify.fan_view(numpy.maximum(fine, 128) - 128, ping.sonar), fan)  # rounded to the nearest
         polar = ensonify.polar_view(fan.astype(numpy.float32), ping.sonar)
         self.assertEqual(polar.shape, ping.raw.shape)
         self.assertGreater(numpy.corrcoef(polar.ravel(), ping.raw.ravel())[0, 1], 0.7)  # the fan's pixels average

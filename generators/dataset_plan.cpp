@@ -28,6 +28,22 @@ bool holds_more_than_state(const DatasetPaths& paths) {
   return false;
 }
 
+bool holds(const fs::path& file) {
+  std::error_code no_throw;
+  return fs::is_regular_file(file, no_throw);
+}
+
+bool holds_plan(const DatasetPaths& paths, const std::string& plan) {
+  return holds(paths.plan()) && read_text(paths.plan()) == plan;
+}
+
+[[noreturn]] void refuse_other_plan(const std::string& out) {
+  throw ConfigError(
+      fmt::format("--out {}: holds a dataset of another recipe, seed, ISA or format; name another folder, or replace "
+                  "it with --force",
+                  out));
+}
+
 }  // namespace
 
 std::vector<Block> plan_blocks(const Recipe& recipe, SampleFormat format) {
@@ -84,7 +100,11 @@ fs::path DatasetPaths::grid(const std::string& place, const std::string& extensi
   return root / "grids" / (place + extension);
 }
 
-FolderLock prepare_dataset(const DatasetPaths& paths, const std::string& plan, bool force) {
+bool is_complete(const DatasetPaths& paths, const std::string& plan) {
+  return holds_plan(paths, plan) && holds(paths.manifest());
+}
+
+void check_folder_for(const DatasetPaths& paths, const std::string& plan, bool force) {
   std::error_code error;
   const std::string out = paths.root.string();
   if (paths.root.empty()) throw ConfigError("--out: must name a folder");
@@ -96,22 +116,24 @@ FolderLock prepare_dataset(const DatasetPaths& paths, const std::string& plan, b
   }
   // In this order: another shard that starts now writes its plan before anything else.
   const bool in_use = holds_more_than_state(paths);
-  if (!fs::is_regular_file(paths.plan(), error) && in_use) {
+  if (!holds(paths.plan()) && in_use) {
     throw ConfigError(fmt::format("--out {}: holds other files; name a new or empty folder", out));
   }
+  if (!force && holds(paths.plan()) && !holds_plan(paths, plan)) refuse_other_plan(out);
+}
+
+FolderLock prepare_dataset(const DatasetPaths& paths, const std::string& plan, bool force) {
+  check_folder_for(paths, plan, force);
+  const std::string out = paths.root.string();
   FolderLock lock(paths.state() / "lock");
-  const auto is_ours = [&] { return write_new_file(paths.plan(), plan) || read_text(paths.plan()) == plan; };
+  const auto is_ours = [&] { return write_new_file(paths.plan(), plan) || holds_plan(paths, plan); };
   if (is_ours()) return lock;
-  if (!force) {
-    throw ConfigError(
-        fmt::format("--out {}: holds a dataset of another recipe, seed, ISA or format; name another folder, or replace "
-                    "it with --force",
-                    out));
-  }
+  if (!force) refuse_other_plan(out);
   if (!lock.hold_alone()) {
     throw ConfigError(
         fmt::format("--out {}: another process works in it; stop that one first, or name another folder", out));
   }
+  std::error_code error;
   for (const char* entry : own_entries) fs::remove_all(paths.root / entry, error);
   write_file(paths.plan(), plan);
   lock.share();

@@ -42,6 +42,12 @@ struct DatasetPaths {
   std::filesystem::path grid(const std::string& place, const std::string& extension) const;
 };
 
+/// Whether a complete set of this plan is there.
+bool is_complete(const DatasetPaths& paths, const std::string& plan);
+
+/// Throws ConfigError where prepare_dataset() would for what the folder holds now; writes nothing.
+void check_folder_for(const DatasetPaths& paths, const std::string& plan, bool force);
+
 /// Makes the folder ready for this plan: new, or holding the same plan (then the work resumes). `force` first removes
 /// a dataset of another plan. Throws ConfigError where the folder holds something else, or where another process works
 /// on what `force` would remove. Keep the lock while working in the folder.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
+#include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -18,22 +19,18 @@
 namespace ensonify {
 namespace {
 
-/// A trajectory into a wall is a mistake in the configuration: found before any work is done.
-void check_trajectories(const FrameMaker& maker) {
-  std::vector<int> swum;
-  int place = 0;
-  for (const Split& split : maker.recipe().splits) {
-    for (std::size_t i = 0; i < split.places.size(); ++i, ++place) {
-      if (std::holds_alternative<TrajectoryPoses>(split.poses)) swum.push_back(place);
-    }
-  }
-  // Places take a while to load. Of several mistakes the first is reported, whichever thread is faster.
-  std::vector<std::exception_ptr> mistakes(swum.size());
-  parallel_for(static_cast<int>(swum.size()), [&](int i) {
+/// A broken scene or a trajectory into a wall is a mistake in the configuration: found before anything is written, so
+/// that the corrected one may use the folder. Places take a while to build; what is built is kept.
+void check_places(const FrameMaker& maker, const std::function<bool()>& stopped) {
+  // Of several mistakes the first is reported, whichever thread is faster.
+  std::vector<std::exception_ptr> mistakes(maker.places().size());
+  parallel_for(static_cast<int>(mistakes.size()), [&](int place) {
+    if (stopped()) return;
     try {
-      maker.check_trajectory(swum[static_cast<std::size_t>(i)]);
+      maker.place(place);
+      maker.check_trajectory(place);
     } catch (...) {
-      mistakes[static_cast<std::size_t>(i)] = std::current_exception();
+      mistakes[static_cast<std::size_t>(place)] = std::current_exception();
     }
   });
   for (const std::exception_ptr& mistake : mistakes) {
@@ -87,7 +84,11 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
     throw ConfigError("truth: true writes EXR files, which WebDataset shards do not hold; use --format folder");
   }
   const DatasetPaths paths{options.out};
-  const FolderLock in_use = prepare_dataset(paths, plan_json(maker, options.isa, options.format), options.force);
+  const std::string plan = plan_json(maker, options.isa, options.format);
+  check_folder_for(paths, plan, options.force);
+  if (!is_complete(paths, plan)) check_places(maker, options.stopped);
+  if (options.stopped()) return Outcome::stopped;
+  const FolderLock in_use = prepare_dataset(paths, plan, options.force);
   std::error_code no_throw;
   const std::vector<Block> blocks = plan_blocks(recipe, options.format);
   if (std::filesystem::is_regular_file(paths.manifest(), no_throw)) {
@@ -96,7 +97,6 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
     options.on_lost(*lost);
     std::filesystem::remove(paths.manifest(), no_throw);  // until they are made again, the set is not complete
   }
-  check_trajectories(maker);
 
   std::vector<Block> missing;
   Progress progress;
@@ -155,8 +155,12 @@ std::string generate_only(const Recipe& recipe, const GenerateOptions& options, 
   const FrameMaker maker(recipe, options.isa);
   const DatasetPaths paths{options.out};
   constexpr bool replace = false;  // a whole set is not given up for one frame
-  const FolderLock in_use = prepare_dataset(paths, plan_json(maker, options.isa, SampleFormat::folder), replace);
-  maker.check_trajectory(maker.locate(index).place);
+  const std::string plan = plan_json(maker, options.isa, SampleFormat::folder);
+  check_folder_for(paths, plan, replace);
+  const int place = maker.locate(index).place;
+  maker.place(place);
+  maker.check_trajectory(place);
+  const FolderLock in_use = prepare_dataset(paths, plan, replace);
   std::vector<WrittenFile> files;
   return write_frame(maker, paths, maker.make(index), files).line;
 }

@@ -12,7 +12,7 @@ import time
 import unittest
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from support import ProgramTest, files, leftovers, main, manifest
+from support import RECIPE, ProgramTest, files, leftovers, main, manifest
 
 # What tells of the run, not of the data.
 COMMAND_LINE = "command_line"
@@ -95,6 +95,26 @@ class SameBits(ProgramTest):
         ranges = {json.loads(line)["range_max_m"] for line in (one / "train/metadata.jsonl").read_text().splitlines()}
         self.assertEqual(len(ranges), 20)
         self.succeed("verify", "one")
+
+    def test_what_is_refused_leaves_the_folder_to_what_is_corrected(self):
+        good = self.write("mine.yaml", RECIPE.format(train=4, test=4, range_max_m="8")).read_text()
+        scene = (self.folder / "block.yaml").read_text()
+        for file, broken, fragment in (
+                ("mine.yaml", good.replace("speed_mps: 0.5", "orbit: {object: block, radius_m: 0.4, depth_m: 3}"), "runs into"),
+                ("mine.yaml", good.replace("speed_mps: 0.5", "orbit: {object: blok, radius_m: 2, depth_m: 3}"), "blok"),
+                ("block.yaml", scene.replace("length_m: {uniform: [1, 2]}", "length_m: 0"), "length_m"),
+                ("block.yaml", scene.replace("shape: box", "mesh: gone.obj"), "gone.obj")):
+            with self.subTest(fragment):
+                whole = (self.folder / file).read_text()
+                self.write(file, broken)
+                done = self.run_program("generate", "mine.yaml", "--out", "mine")
+                self.assertIn(done.returncode, (1, 2))
+                self.assertIn(fragment, done.stderr)
+                self.assertFalse((self.folder / "mine").exists())
+                self.run_program("generate", "mine.yaml", "--out", "mine", "--only", 5)
+                self.assertFalse((self.folder / "mine").exists())
+                self.write(file, whole)
+        self.generate("mine", recipe="mine.yaml")
 
     def test_splits_share_no_frame(self):
         whole = self.generate("whole")

@@ -67,6 +67,19 @@ Twist parse_twist(const std::string& text) {
   return {{v[0], v[1], v[2]}, {radians(v[3]), radians(v[4]), radians(v[5])}};
 }
 
+SonarModel open_sonar(const std::string& path_or_name, const RangeWindow& window) {
+  if (window.range_max_m) {
+    const SonarModel s = load_sonar(path_or_name);
+    const double begin_m = window.range_min_m.value_or(s.geometry.range_min_m);
+    if (*window.range_max_m <= begin_m || *window.range_max_m > s.instrument_range_max_m) {
+      throw ConfigError(
+          fmt::format("--range-max {0}: the range window {1} to {0} m must lie within the {2} to {3} m of {4}",
+                      *window.range_max_m, begin_m, s.instrument_range_min_m, s.instrument_range_max_m, s.name));
+    }
+  }
+  return load_sonar(path_or_name, window);
+}
+
 Scene open_scene(const std::string& path_or_name, std::uint64_t layout) {
   Scene scene = ensonify::open_scene(path_or_name, layout);
   for (const std::string& warning : scene.warnings) fmt::print(std::cerr, "ensonify: warning: {}\n", warning);

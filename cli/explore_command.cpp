@@ -48,7 +48,7 @@ SonarModel sonar_of(const Arguments& a) {
   RangeWindow window;
   window.range_max_m = a.choice.range_max_m;
   if (!a.range_bins.empty()) window.range_bins = a.range_bins == "native" ? 0 : std::stoi(a.range_bins);
-  return load_sonar(a.choice.sonar, window);
+  return open_sonar(a.choice.sonar, window);
 }
 
 ExploreSettings settings_of(const Arguments& a) {

@@ -117,7 +117,7 @@ Work chosen_work(const Arguments& a) {
   }
   RangeWindow window;
   if (a.range_max_m > 0) window.range_max_m = a.range_max_m;
-  work.fan = load_sonar(a.fan, window).geometry;
+  work.fan = open_sonar(a.fan, window).geometry;
   return work;
 }
 

@@ -60,7 +60,7 @@ nlohmann::json summary(const PingImages& images, const PingTruth& truth, const S
 }
 
 void run(const Arguments& a) {
-  const SonarModel sonar = load_sonar(a.sonar, window_of(a));
+  const SonarModel sonar = open_sonar(a.sonar, window_of(a));
   const NoiseProfile profile = load_noise(a.noise);
   const Pose T_world_sonar = parse_pose(a.pose);
   const Scene scene = open_scene(a.scene, a.layout);

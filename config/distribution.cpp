@@ -19,6 +19,17 @@ struct Sampler {
   }
 };
 
+struct Ends {
+  Limits operator()(const Constant& d) const { return {d.value, d.value}; }
+  Limits operator()(const Uniform& d) const { return {d.low, d.high}; }
+  Limits operator()(const LogUniform& d) const { return {d.low, d.high}; }
+  Limits operator()(const Normal& d) const { return {d.mean - 3.0 * d.sigma, d.mean + 3.0 * d.sigma}; }
+  Limits operator()(const Choice& d) const {
+    const auto [low, high] = std::minmax_element(d.values.begin(), d.values.end());
+    return {*low, *high};
+  }
+};
+
 }  // namespace
 
 Distribution read_distribution(Reader& reader, std::string_view key, Limits limits) {
@@ -62,5 +73,7 @@ Distribution read_distribution_or(Reader& reader, std::string_view key, double f
 double sample(const Distribution& distribution, RandomSequence& random) {
   return std::visit(Sampler{random}, distribution);
 }
+
+Limits ends_of(const Distribution& distribution) { return std::visit(Ends{}, distribution); }
 
 }  // namespace ensonify

@@ -37,4 +37,7 @@ Distribution read_distribution_or(Reader& reader, std::string_view key, double f
 
 double sample(const Distribution& distribution, RandomSequence& random);
 
+/// The least and the largest value that it can give.
+Limits ends_of(const Distribution& distribution);
+
 }  // namespace ensonify

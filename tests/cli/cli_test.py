@@ -159,7 +159,7 @@ class Usage(ProgramTest):
             (["ping", "test_tank", "--sonar", "holoocean", "--noise", "papr", "--pose", "0 0 -1 0 0 0", "--out", "o"],
              ["did you mean 'paper'"]),
             (["ping", "test_tank", "--sonar", "oculus_m1200d_hf", "--range-max", "50", "--pose", "0 0 -1 0 0 0",
-              "--out", "o"], ["50 m", "0.1 to 10 m"]),
+              "--out", "o"], ["--range-max 50", "50 m", "0.1 to 10 m"]),
             (["voxelize", "test_tank", "--resolution", "0", "--out", "o.npz"], ["--resolution"]),
             (["voxelize", "test_tank", "--resolution", "0.5", "--out", "o.xyz"], [".xyz", ".npz"]),
             (["voxelize", "test_tank", "--resolution", "0.001", "--out", "o.npz"], ["cells", "m fits"]),

@@ -92,6 +92,18 @@ TEST(Distribution, LogUniformOfOnePointStaysOnIt) {
   }
 }
 
+TEST(Distribution, EndsAreTheLeastAndTheLargestDrawn) {
+  const auto ends = [](const std::string& value) {
+    const Limits limits = ends_of(parse(value));
+    return std::pair(limits.low, limits.high);
+  };
+  EXPECT_EQ(ends("3"), std::pair(3.0, 3.0));
+  EXPECT_EQ(ends("{uniform: [-2, 6]}"), std::pair(-2.0, 6.0));
+  EXPECT_EQ(ends("{log_uniform: [0.1, 10]}"), std::pair(0.1, 10.0));
+  EXPECT_EQ(ends("{normal: [10, 2]}"), std::pair(4.0, 16.0));
+  EXPECT_EQ(ends("{choice: [4, 1, 2]}"), std::pair(1.0, 4.0));
+}
+
 TEST(Distribution, Refusals) {
   EXPECT_THAT(refusal("{uniform: [3, 1]}"), testing::HasSubstr("t.yaml:1: a.uniform"));
   EXPECT_THAT(refusal("{uniform: [0, 11]}", {0, 10}), testing::HasSubstr("must lie in [0, 10]"));

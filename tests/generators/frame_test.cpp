@@ -261,6 +261,24 @@ TEST_F(Recipes, Refusals) {
   EXPECT_THAT(refusal(head + "mask: {threshold: 0}\nsplits:\n" + random_split), HasSubstr("mask.threshold"));
 }
 
+TEST_F(Recipes, EveryWindowThatCanBeDrawnIsTheInstruments) {
+  const auto said = [&](const std::string& sonar) {
+    return refusal("name: test\nsonar: {model: oculus_m1200d_hf, " + sonar + "}\nnoise: paper\nsplits:\n" +
+                   random_split);
+  };
+  EXPECT_EQ(said("range_max_m: {uniform: [4, 10]}"), "");
+  const auto beyond = AllOf(HasSubstr("recipe.yaml:2: sonar.range_max_m"), HasSubstr("0.1 to 10 m of oculus_m1200d_hf"),
+                            HasSubstr("not 11"));
+  EXPECT_THAT(said("range_max_m: 11"), beyond);
+  EXPECT_THAT(said("range_max_m: {uniform: [4, 11]}"), beyond);
+  EXPECT_THAT(said("range_max_m: {choice: [11, 4]}"), beyond);
+  EXPECT_THAT(said("range_max_m: {normal: [8, 1]}"), beyond);
+  EXPECT_THAT(said("range_min_m: 4, range_max_m: {uniform: [3, 10]}"),
+              AllOf(HasSubstr("recipe.yaml:2: sonar.range_max_m"), HasSubstr("begins at 4 m")));
+  EXPECT_THAT(said("range_min_m: 0.05"), AllOf(HasSubstr("recipe.yaml:2: sonar.range_min_m"), HasSubstr("not 0.05")));
+  EXPECT_THAT(said("range_min_m: 12"), HasSubstr("recipe.yaml:2: sonar.range_min_m"));
+}
+
 TEST_F(Recipes, TrajectoryRefusals) {
   const auto said = [&](const std::string& keys) {
     std::string text = head + "splits:\n" + swum_split;

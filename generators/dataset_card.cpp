@@ -20,9 +20,27 @@ const char* size_category(int frames) {
   return "1M<n<10M";
 }
 
+/// The rows of the images, and where they begin and end.
+std::string describe_rows(const Recipe& recipe, const json& sonar) {
+  const double begin_m = sonar["range_min_m"].get<double>();
+  if (!recipe.range_max_m || std::holds_alternative<Constant>(*recipe.range_max_m)) {
+    return fmt::format("{} range bins (rows, nearest first, {} to {} m)", sonar["range_bins"].get<int>(), begin_m,
+                       sonar["range_max_m"].get<double>());
+  }
+  const Limits ends = ends_of(*recipe.range_max_m);
+  const auto bins = [&](double end_m) {
+    return load_sonar(recipe.sonar, {recipe.range_min_m, end_m, recipe.range_bins}).geometry.range_bins;
+  };
+  const int fewest = bins(ends.low);
+  const int most = bins(ends.high);
+  return fmt::format(
+      "{} range bins (rows, nearest first, from {} m to an end that is drawn for each frame, {} to {} m)",
+      fewest == most ? fmt::format("{}", fewest) : fmt::format("{} to {}", fewest, most), begin_m, ends.low, ends.high);
+}
+
 }  // namespace
 
-void write_dataset_card(const DatasetPaths& paths, const json& manifest) {
+void write_dataset_card(const DatasetPaths& paths, const json& manifest, const Recipe& recipe) {
   int frames = 0;
   std::string configs;
   std::string counts;
@@ -60,7 +78,7 @@ configs:
 Simulated pings of a multibeam imaging sonar ({sonar}), made by ensonify {version}.
 Every frame: the noisy image (`raw`), its noise-free direct-path twin (`clean`), the binary mask (255 exactly where
 `clean` >= {threshold}), and labels (0 water, 1 direct echo, 2 multipath, 3 sidelobe, 4 shadow, 5 outside).
-Images are {bins} range bins (rows, nearest first, {rmin} to {rmax} m) by {beams} beams (columns, port first).
+Images are {rows} by {beams} beams (columns, port first).
 `metadata.jsonl` in every split gives the true pose (`T_world_sonar`, world ENU, sonar x forward, y left, z up, metres)
 and, on trajectories, the dead-reckoned one (`T_world_sonar_est`). `grids/` holds the ground-truth occupancy of every
 place: `occupancy` 0 free, 1 surface, 2 interior; `observable` 1 where this set's pings could see the cell.
@@ -86,8 +104,7 @@ Content hash (SHA-256 over decoded pixels, metadata and grids): `{hash}`
           fmt::arg("title", manifest["recipe"]["title"].get<std::string>()), fmt::arg("size", size_category(frames)),
           fmt::arg("configs", configs), fmt::arg("sonar", sonar["title"].get<std::string>()),
           fmt::arg("version", ENSONIFY_VERSION), fmt::arg("threshold", manifest["mask"]["threshold"].get<int>()),
-          fmt::arg("bins", sonar["range_bins"].get<int>()), fmt::arg("rmin", sonar["range_min_m"].get<double>()),
-          fmt::arg("rmax", sonar["range_max_m"].get<double>()), fmt::arg("beams", sonar["beam_azimuth_rad"].size()),
+          fmt::arg("rows", describe_rows(recipe, sonar)), fmt::arg("beams", sonar["beam_azimuth_rad"].size()),
           fmt::arg("counts", counts), fmt::arg("places", places), fmt::arg("isa", manifest["isa"].get<std::string>()),
           fmt::arg("command", manifest["command_line"].get<std::string>()),
           fmt::arg("hash", manifest["root_hash"].get<std::string>())));

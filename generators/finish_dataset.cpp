@@ -219,7 +219,7 @@ bool finish_dataset(const FrameMaker& maker, const DatasetPaths& paths, const st
                 {"root_hash", root.hex()}};
   for (const Split& split : recipe.splits) manifest["counts"][split.name] = split.frames;
   remove_abandoned(paths.root);
-  write_dataset_card(paths, manifest);
+  write_dataset_card(paths, manifest, recipe);
   write_croissant(paths, manifest);
   files.insert(files.end(), {paths.root / "README.md", paths.root / "croissant.json"});
   manifest["checksums"] = {{"file", paths.checksums().filename().string()},

@@ -96,6 +96,16 @@ class SameBits(ProgramTest):
         self.assertEqual(len(ranges), 20)
         self.succeed("verify", "one")
 
+    def test_the_card_says_what_range_is_drawn(self):
+        for name, given, said in (("drawn", "{uniform: [4, 8]}", "128 range bins (rows, nearest first, from 0.2 m to an end "
+                                   "that is drawn for each frame, 4 to 8 m)"),
+                                  ("fixed", "8", "128 range bins (rows, nearest first, 0.2 to 8 m)")):
+            self.recipe(f"{name}.yaml", train=2, test=2, range_max_m=given)
+            self.assertIn(said, (self.generate(name, recipe=f"{name}.yaml") / "README.md").read_text())
+        native = self.recipe("native.yaml", train=2, test=2, range_max_m="{uniform: [4, 8]}")
+        native.write_text(native.read_text().replace("range_bins: 128", "range_bins: native"))
+        self.assertIn("Images are 380 to 780 range bins", (self.generate("native", recipe="native.yaml") / "README.md").read_text())
+
     def test_what_is_refused_leaves_the_folder_to_what_is_corrected(self):
         good = self.write("mine.yaml", RECIPE.format(train=4, test=4, range_max_m="8")).read_text()
         scene = (self.folder / "block.yaml").read_text()

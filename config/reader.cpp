@@ -31,6 +31,14 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return row.back();
 }
 
+/// Whether a key that is there stands for one that is missing. Keys that are read later are valid, and some differ by a
+/// few letters only (min_m and max_m): just what is all but the same, or the beginning of it.
+bool stands_for(std::string_view present, std::string_view missing) {
+  constexpr std::size_t shortest = 3;
+  if (present.size() >= shortest && missing.starts_with(present)) return true;
+  return edit_distance(present, missing) <= std::max(present.size(), missing.size()) / 4;
+}
+
 std::string describe(Limits limits) {
   if (limits.low == positive.low) return "must be above 0";
   if (limits.low == 0.0 && limits.high == not_negative.high) return "must not be negative";
@@ -68,10 +76,13 @@ std::string text_fault(std::string_view text) {
 
 std::string nearest_word(std::string_view word, const std::vector<std::string>& candidates) {
   std::string best;
-  std::size_t best_distance = std::max<std::size_t>(3, word.size() / 2) + 1;
+  const std::size_t farthest = word.size() < 4 ? 1 : std::max<std::size_t>(2, word.size() / 3);
+  std::size_t best_distance = farthest + 1;
   for (const std::string& candidate : candidates) {
     std::size_t distance = edit_distance(word, candidate);
-    if (!word.empty() && candidate.starts_with(word)) distance = std::min<std::size_t>(distance, 2);
+    const bool begins = !word.empty() && candidate.starts_with(word);
+    const bool goes_on = candidate.size() >= 3 && word.starts_with(candidate);
+    if (begins || goes_on) distance = std::min(distance, farthest);
     if (distance < best_distance) {
       best_distance = distance;
       best = candidate;
@@ -132,8 +143,8 @@ YAML::Node Reader::node(std::string_view key) { return required(key); }
 YAML::Node Reader::required(std::string_view key) {
   if (!has(key)) {
     for (const std::string& present : keys()) {
-      if (!asked_.contains(present) && nearest_word(present, {std::string(key)}) == key) {
-        fail(present, fmt::format("unknown key; did you mean '{}'?", key));
+      if (!asked_.contains(present) && stands_for(present, key)) {
+        fail(present, fmt::format("did you mean '{}', which is missing here?", key));
       }
     }
     fail("", fmt::format("needs the key '{}'", key));

@@ -156,6 +156,12 @@ Split read_split(const std::string& name, Reader split) {
   Split result;
   result.name = name;
   result.places = read_places(split);
+  if (split.has("frames_per_place") && split.has("frames")) {
+    split.fail("frames", "does not go with 'frames_per_place'; keep one of the two");
+  }
+  if (split.has("trajectory") && split.has("random_poses")) {
+    split.fail("random_poses", "does not go with 'trajectory'; keep one of the two");
+  }
   if (split.has("frames_per_place")) {
     const int places = static_cast<int>(result.places.size());
     result.frames = split.integer("frames_per_place", 1, max_frames / places) * places;

@@ -44,8 +44,35 @@ TEST(Reader, UnknownKeyNamesPlaceAndNearest) {
 TEST(Reader, MissingKey) {
   const auto use = [](Reader& r) { r.number("range_max_m"); };
   EXPECT_THAT(refusal("a: 1\n", use), HasSubstr("needs the key 'range_max_m'"));
-  EXPECT_EQ(refusal("a: 1\nrange_max: 5\n", use), "t.yaml:2: range_max: unknown key; did you mean 'range_max_m'?");
+  EXPECT_EQ(refusal("a: 1\nrange_max: 5\n", use),
+            "t.yaml:2: range_max: did you mean 'range_max_m', which is missing here?");
   EXPECT_THAT(refusal("range_max_m:\n", use), HasSubstr("needs the key"));  // null is no value
+}
+
+// Keys that are read after the missing one are not unknown.
+TEST(Reader, MissingKeyAccusesNoOther) {
+  const auto sonar = [](Reader& r) {
+    r.text("name");
+    r.child("beams");
+  };
+  EXPECT_EQ(refusal("beams: {}\n", sonar), "t.yaml:1: needs the key 'name'");
+  const auto window = [](Reader& r) {
+    r.number("min_m");
+    r.number("max_m");
+  };
+  EXPECT_EQ(refusal("max_m: 3\n", window), "t.yaml:1: needs the key 'min_m'");
+  EXPECT_EQ(refusal("y_m: 3\n", [](Reader& r) { r.number("x_m"); }), "t.yaml:1: needs the key 'x_m'");
+}
+
+TEST(NearestWord, NamesWhatIsMeantAndNothingElse) {
+  const std::vector<std::string> filters{"lee", "kuan", "frost", "median", "wavelet"};
+  EXPECT_EQ(nearest_word("none", filters), "");
+  EXPECT_EQ(nearest_word("le", filters), "lee");
+  EXPECT_EQ(nearest_word("wavlet", filters), "wavelet");
+  EXPECT_EQ(nearest_word("mediam", filters), "median");
+  EXPECT_EQ(nearest_word("xyz", filters), "");
+  EXPECT_EQ(nearest_word("training", {"test", "train", "val"}), "train");
+  EXPECT_EQ(nearest_word("holo", {"holoocean", "oculus_m370s"}), "holoocean");
 }
 
 TEST(Reader, NestedPlaces) {

@@ -279,6 +279,15 @@ TEST_F(Recipes, EveryWindowThatCanBeDrawnIsTheInstruments) {
   EXPECT_THAT(said("range_min_m: 12"), HasSubstr("recipe.yaml:2: sonar.range_min_m"));
 }
 
+TEST_F(Recipes, KeysThatExcludeEachOther) {
+  const std::string both = "  val:\n    frames: 2\n    places: [{scene: a.yaml}]\n    random_poses: {}\n";
+  EXPECT_EQ(refusal(head + "splits:\n" + both), "");
+  EXPECT_THAT(refusal(head + "splits:\n" + both + "    frames_per_place: 2\n"),
+              AllOf(HasSubstr("recipe.yaml:6: splits.val.frames"), HasSubstr("does not go with 'frames_per_place'")));
+  EXPECT_THAT(refusal(head + "splits:\n" + both + "    trajectory: {}\n"),
+              AllOf(HasSubstr("splits.val.random_poses"), HasSubstr("does not go with 'trajectory'")));
+}
+
 TEST_F(Recipes, TrajectoryRefusals) {
   const auto said = [&](const std::string& keys) {
     std::string text = head + "splits:\n" + swum_split;

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <map>
 #include <optional>
 
 #include "ensonify/config/paths.hpp"
@@ -47,6 +48,17 @@ fs::path data_folder() {
   return data_near_program().value_or(installed_data_folder);
 }
 
+/// What a user calls a file of the kind.
+const char* word_for(const std::string& kind) {
+  static const std::map<std::string, const char*> words{
+      {"scenes", "scene"},         {"sensor_models", "sonar"},
+      {"noise", "noise profile"},  {"generators", "recipe"},
+      {"filters", "filter chain"}, {"filters/presets", "preset"},
+      {"filters/models", "model"}, {"filters/tuning", "grid of parameters"}};
+  const auto found = words.find(kind);
+  return found == words.end() ? "file" : found->second;
+}
+
 }  // namespace
 
 fs::path library_folder(const std::string& kind) { return data_folder() / kind / "library"; }
@@ -69,7 +81,7 @@ fs::path resolve_name(const std::string& kind, const std::string& path_or_name, 
     return library_folder(kind) / (path_or_name + extension);
   }
   const std::string nearest = nearest_word(path_or_name, names);
-  throw ConfigError(fmt::format("{}: no such file and no bundled name of {}; {}", path_or_name, kind,
+  throw ConfigError(fmt::format("{}: no such file and no bundled {}; {}", path_or_name, word_for(kind),
                                 names.empty()     ? "none is bundled"
                                 : nearest.empty() ? fmt::format("there are {}", fmt::join(names, ", "))
                                                   : fmt::format("did you mean '{}'?", nearest)));

@@ -22,11 +22,26 @@ namespace {
 constexpr int max_frames = 100'000'000;
 constexpr Limits angle_limits{-360.0, 360.0};
 
-/// A file beside the recipe where there is one, else the word as it is: a path or a bundled name.
-std::string beside(const Reader& reader, const std::string& word) {
+/// A file beside the recipe where there is one, else the word as it is: a path or a bundled name of that kind.
+std::string named(const Reader& reader, std::string_view key, const std::string& kind, const std::string& word) {
   std::error_code no_throw;
   const std::filesystem::path path = reader.folder() / word;
-  return std::filesystem::is_regular_file(path, no_throw) ? path.string() : word;
+  if (std::filesystem::is_regular_file(path, no_throw)) return path.string();
+  try {
+    resolve_name(kind, word);
+  } catch (const ConfigError& e) {
+    reader.fail(key, e.what());
+  }
+  return word;
+}
+
+/// A mesh has no water, no bounds and no navigable box.
+void refuse_mesh(const Reader& entry, const std::string& scene) {
+  const std::string extension = std::filesystem::path(scene).extension().string();
+  if (extension.empty() || extension == ".yaml" || extension == ".yml") return;
+  entry.fail("scene", fmt::format("{} is no scene YAML; write one whose objects name the mesh, such as "
+                                  "{{name: thing, mesh: {}, material: steel}}",
+                                  scene, std::filesystem::path(scene).filename().string()));
 }
 
 /// The stem of a scene's file, which names files of the dataset.
@@ -49,7 +64,8 @@ std::string place_name(const Reader& entry, const std::string& scene) {
 std::vector<PlaceRef> read_places(Reader& split) {
   std::vector<PlaceRef> places;
   for (Reader& entry : split.children("places")) {
-    const std::string scene = beside(entry, entry.text("scene"));
+    const std::string scene = named(entry, "scene", "scenes", entry.text("scene"));
+    refuse_mesh(entry, scene);
     const std::string stem = place_name(entry, scene);
     const std::vector<double> layouts =
         entry.has("layouts") ? entry.numbers("layouts", -1, {0.0, 1e9}) : std::vector<double>{0.0};
@@ -83,9 +99,9 @@ RandomPoses read_random_poses(Reader poses) {
 std::vector<std::string> read_noise(Reader& file) {
   std::vector<std::string> profiles;
   if (file.has("noise") && file.node("noise").IsSequence()) {
-    for (const std::string& word : file.texts("noise")) profiles.push_back(beside(file, word));
+    for (const std::string& word : file.texts("noise")) profiles.push_back(named(file, "noise", "noise", word));
   } else {
-    profiles.push_back(beside(file, file.text("noise")));
+    profiles.push_back(named(file, "noise", "noise", file.text("noise")));
   }
   if (profiles.empty()) file.fail("noise", "needs at least one profile; none is a profile too");
   return profiles;
@@ -217,7 +233,7 @@ Recipe load_recipe(const ConfigSource& source) {
   recipe.title = file.text_or("title", recipe.name);
   recipe.seed = static_cast<std::uint64_t>(file.number_or("seed", 0, {0.0, 9e15}));
   Reader sonar = file.child("sonar");
-  recipe.sonar = beside(file, sonar.text("model"));
+  recipe.sonar = named(sonar, "model", "sensor_models", sonar.text("model"));
   if (sonar.has("range_min_m")) recipe.range_min_m = sonar.number("range_min_m", positive);
   if (sonar.has("range_max_m")) recipe.range_max_m = read_distribution(sonar, "range_max_m", positive);
   if (sonar.has("range_bins")) {

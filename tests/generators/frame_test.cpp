@@ -279,6 +279,26 @@ TEST_F(Recipes, EveryWindowThatCanBeDrawnIsTheInstruments) {
   EXPECT_THAT(said("range_min_m: 12"), HasSubstr("recipe.yaml:2: sonar.range_min_m"));
 }
 
+TEST_F(Recipes, NamesThatAreNoneAreNamedWithTheirLine) {
+  const auto said = [&](const std::string& word, const std::string& other) {
+    std::string text = head + "splits:\n" + swum_split;
+    text.replace(text.find(word), word.size(), other);
+    return refusal(text);
+  };
+  EXPECT_THAT(said("oculus_m1200d_hf", "oculus_m1200_hf"),
+              AllOf(HasSubstr("recipe.yaml:2: sonar.model: oculus_m1200_hf"), HasSubstr("no bundled sonar"),
+                    HasSubstr("did you mean 'oculus_m1200d_hf'")));
+  EXPECT_THAT(said("noise: paper", "noise: papr"),
+              AllOf(HasSubstr("recipe.yaml:3: noise: papr"), HasSubstr("no bundled noise profile")));
+  EXPECT_THAT(said("noise: paper", "noise: [paper, nonne]"), HasSubstr("recipe.yaml:3: noise: nonne"));
+  EXPECT_THAT(said("way.yaml", "test_tnk"),
+              AllOf(HasSubstr("recipe.yaml:7: splits.test.places[0].scene: test_tnk"), HasSubstr("no bundled scene"),
+                    HasSubstr("did you mean 'test_tank'")));
+  write("cube.obj", "v 0 0 -2\nv 1 0 -2\nv 0 1 -2\nf 1 2 3\n");
+  EXPECT_THAT(said("way.yaml", "cube.obj"), AllOf(HasSubstr("recipe.yaml:7: splits.test.places[0].scene"),
+                                                  HasSubstr("no scene YAML"), HasSubstr("mesh: cube.obj")));
+}
+
 TEST_F(Recipes, KeysThatExcludeEachOther) {
   const std::string both = "  val:\n    frames: 2\n    places: [{scene: a.yaml}]\n    random_poses: {}\n";
   EXPECT_EQ(refusal(head + "splits:\n" + both), "");

@@ -209,12 +209,18 @@ void tell_apart(std::vector<Split>& all) {
 
 void refuse_shared_places(const Reader& splits, const std::vector<Split>& all) {
   std::set<std::pair<std::string, std::uint64_t>> seen;
-  std::set<std::string> names;
+  std::map<std::string, std::string> scene_of_name;
   for (const Split& split : all) {
     for (const PlaceRef& place : split.places) {
-      if (!seen.emplace(place.scene, place.layout).second || !names.insert(place.name).second) {
+      if (!seen.emplace(place.scene, place.layout).second) {
         splits.fail(split.name, fmt::format("place {} layout {} is used twice; splits must not share a layout",
                                             place.scene, place.layout));
+      }
+      const auto [other, fresh] = scene_of_name.emplace(place.name, place.scene);
+      if (!fresh) {
+        splits.fail(split.name, fmt::format("{} and {} would both be the place {}, which names files of the dataset; "
+                                            "rename one of the two",
+                                            other->second, place.scene, place.name));
       }
     }
   }

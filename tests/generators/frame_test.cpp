@@ -308,6 +308,15 @@ TEST_F(Recipes, KeysThatExcludeEachOther) {
               AllOf(HasSubstr("splits.val.random_poses"), HasSubstr("does not go with 'trajectory'")));
 }
 
+TEST_F(Recipes, ScenesOfOneFileNameAreNoSharedPlace) {
+  fs::create_directories(folder / "deep");
+  write("deep/a.yaml", "title: another\n" + small_place);
+  const std::string said = refusal(head + "splits:\n" + random_split +
+                                   "  val:\n    frames: 2\n    places: [{scene: deep/a.yaml}]\n    random_poses: {}\n");
+  EXPECT_THAT(said, AllOf(HasSubstr("deep/a.yaml would both be the place"), HasSubstr("rename one")));
+  EXPECT_THAT(said, testing::Not(HasSubstr("used twice")));
+}
+
 TEST_F(Recipes, TrajectoryRefusals) {
   const auto said = [&](const std::string& keys) {
     std::string text = head + "splits:\n" + swum_split;

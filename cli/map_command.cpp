@@ -1,7 +1,9 @@
 #include <fmt/format.h>
+#include <fmt/ostream.h>
 #include <tbb/global_control.h>
 
 #include <cmath>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <string>
@@ -27,7 +29,16 @@ struct Arguments {
   std::string progress = "auto";
 };
 
-void print_cells(const MadeMap& made, const std::string& out) {
+/// Why a map has no free cells, or no occupied ones: seldom what was wanted.
+const char* likely_cause(std::size_t occupied, std::size_t free, const Arguments& a) {
+  if (occupied == 0 && free == 0) return "no ping reaches into its box";
+  if (occupied == 0) return "no pixel echoes; try a lower --threshold";
+  if (a.request.threshold <= 0.0) return "at --threshold 0 every pixel echoes";
+  if (!a.no_post) return "equalisation after the filter lifts dark water too; try --no-post, or a higher --threshold";
+  return "every pixel that was looked at echoes; try a higher --threshold";
+}
+
+void print_cells(const MadeMap& made, const Arguments& a) {
   const GridFrame& frame = made.map.frame;
   std::size_t occupied = 0;
   std::size_t free = 0;
@@ -38,7 +49,11 @@ void print_cells(const MadeMap& made, const std::string& out) {
   fmt::print("{}: {} frames{}, {} x {} x {} cells of {} m{}: {} occupied, {} free, {} unknown -> {}\n", made.place,
              made.frames, made.ordered ? "" : " (random poses: in no order, which maps do not need)", frame.size[0],
              frame.size[1], frame.size[2], frame.resolution_m, made.as_truth ? " in the box of the truth grid" : "",
-             occupied, free, frame.cells() - occupied - free, out);
+             occupied, free, frame.cells() - occupied - free, a.out);
+  if (occupied == 0 || free == 0) {
+    fmt::print(std::cerr, "ensonify: warning: the map has no {} cell: {}\n", free == 0 ? "free" : "occupied",
+               likely_cause(occupied, free, a));
+  }
 }
 
 void run(const Arguments& a) {
@@ -59,7 +74,7 @@ void run(const Arguments& a) {
     progress.show(stage, done, done, total);
   });
   write_unbroken(out.parent_path(), [&] { write_map(made.map, out, a.slice_z_m); });
-  print_cells(made, a.out);
+  print_cells(made, a);
 }
 
 }  // namespace
@@ -97,8 +112,8 @@ void add_map(CLI::App& app) {
       ->check(CLI::Range(1, 1024));
   command->add_option("--progress", a->progress, "auto, json or none")->check(CLI::IsMember({"auto", "json", "none"}));
   command->footer(
-      "Example:\n  ensonify map out/quick --scene test_tank --filter wavelet --threshold 30 --model carve --out "
-      "out/tank.bt");
+      "Example:\n  ensonify map out/quick --scene test_tank --filter wavelet --no-post --threshold 30 --model carve "
+      "--out out/tank.bt");
   command->callback([a] { run(*a); });
 }
 

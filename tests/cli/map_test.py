@@ -83,6 +83,15 @@ class MapTest(ProgramTest):
             self.assertGreaterEqual(log_odds.min(), 0)
             self.assertGreater(log_odds.max(), 0)
 
+    def test_a_map_of_one_kind_of_cells_is_warned_of(self):
+        for words, fragment in (((), "no free cell: equalisation after the filter"),
+                                (("--no-post", "--threshold", 1), "no free cell: every pixel that was looked at"),
+                                (("--threshold", 0), "no free cell: at --threshold 0"),
+                                (("--threshold", 256), "no occupied cell: no pixel echoes; try a lower --threshold")):
+            done = self.map("map.npz", "--model", "carve", *words)
+            self.assertIn(f"ensonify: warning: the map has {fragment}", done.stderr, words)
+        self.assertEqual(self.map("map.npz", "--model", "carve", "--filter", "clean").stderr, "")
+
     def test_every_format_is_written_and_nothing_else(self):
         for name in ("map.npz", "map.bt", "map.ot", "map.pgm", "map.ply"):
             self.map(f"maps/{name}", "--max-frames", 2)

@@ -4,6 +4,7 @@
 
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
+#include "ensonify/cli/truth_warnings.hpp"
 #include "ensonify/config/library.hpp"
 #include "ensonify/core/error.hpp"
 #include "ensonify/generators/place.hpp"
@@ -44,11 +45,15 @@ void check(const std::string& path_or_name, std::uint64_t layout) {
       box(scene.bounds_m), box(scene.navigable_m), truth.grid.frame.size[0], truth.grid.frame.size[1],
       truth.grid.frame.size[2], truth.grid.frame.resolution_m, sound_speed_mps(scene.water));
   std::size_t at = 0;
+  std::size_t open = 0;
   for (const Instance& instance : scene.instances) {
     if (!instance.obstacle) continue;
     const VoxelReport& report = truth.reports[at++];
+    open += !report.watertight;
     if (!report.watertight) fmt::print("  {}: {}\n", instance.name, report.describe());
   }
+  if (open == 0 && at > 0) fmt::print("  {}\n", at == 1 ? "watertight" : "all watertight");
+  warn_of_void(scene, truth);
   for (std::size_t i = 0; i < scene.waypoints.size(); ++i) {
     if (has_room(truth.grid, scene.waypoints[i].translation(), 0.0)) continue;
     throw ConfigError(fmt::format("{}: waypoint {} lies inside something; move it", scene.name, i));

@@ -5,6 +5,7 @@
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/cli/signals.hpp"
+#include "ensonify/cli/truth_warnings.hpp"
 #include "ensonify/output/grid_files.hpp"
 #include "ensonify/sim/voxelize.hpp"
 
@@ -42,6 +43,7 @@ void run(const Arguments& a) {
       fmt::print("  {}: {}\n", instance.name, report.describe());
     }
   }
+  warn_of_void(scene, truth);
 }
 
 }  // namespace

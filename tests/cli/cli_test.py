@@ -334,6 +334,45 @@ class Meshes(ProgramTest):
                 self.refuse(1, ["evil.gltf"], "scene", "check", "meshes/evil.gltf")
 
 
+class Void(ProgramTest):
+    """Scenes whose truth holds nothing of what they describe are valid, and seldom meant."""
+
+    def check(self, changes, fragments):
+        scene = SCENE
+        for old, new in changes:
+            self.assertIn(old, scene)
+            scene = scene.replace(old, new)
+        self.write("own_scene.yaml", scene)
+        for words in (("scene", "check", "own_scene.yaml"),
+                      ("voxelize", "own_scene.yaml", "--resolution", 0.2, "--out", "truth.npz")):
+            said = self.succeed(*words).stderr
+            for fragment in fragments:
+                self.assertIn(f"ensonify: warning: own_scene: {fragment}", said)
+            self.assertEqual(said.count("warning"), len(fragments), said)
+
+    def test_of_what_is_no_cell(self):
+        alone = ("    on_seabed: true\n", "")
+        pose = "pose: {x_m: {uniform: [-1, 1]}}"
+        self.check([], [])
+        self.check([("depth_m: 4,", "depth_m: 14,"), alone, (pose, "pose: [0, 0, -2]")],
+                   ["seabed has no cell in the truth: it lies outside of bounds"])
+        self.check([alone, (pose, "pose: [40, 0, -2]")], ["block has no cell in the truth"])
+        self.check([("length_m: {uniform: [1, 2]}", "length_m: 11"), ("width_m: 1", "width_m: 11"),
+                    ("height_m: 2", "height_m: 3.9"), (SCENE[SCENE.index("waypoints"):], "")],
+                   ["navigable, (-5, -5, -3.4) to (5, 5, -0.6) m, has no free cell"])
+        self.check([(SCENE[SCENE.index("seabed"):], "surface: {roughness_m: 0.03, wavelength_m: 3, spacing_m: 0.5}\n")], ["nothing in it is an obstacle"])
+
+    def test_of_bundled_places_none(self):
+        for name in ("test_tank", "pier_harbor", "boulder_field", "ferry_berth"):  # parts and copies, some out of the water
+            self.assertEqual(self.succeed("scene", "check", name).stderr, "")
+
+    def test_what_is_watertight_is_said_to_be(self):
+        self.write("cube.obj", CUBE_OBJ)
+        self.assertIn("watertight", self.succeed("scene", "check", "cube.obj").stdout)
+        self.write("open.obj", CUBE_OBJ[:CUBE_OBJ.rindex("f ")])
+        self.assertIn("not watertight (4 open edges)", self.succeed("scene", "check", "open.obj").stdout)
+
+
 class Output(ProgramTest):
     def setUp(self):
         super().setUp()

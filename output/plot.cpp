@@ -11,18 +11,28 @@
 namespace ensonify {
 namespace {
 
-/// Distinct also in grey: Okabe and Ito 2008, darkest first.
-constexpr const char* style_lines =
-    "set linetype 1 lc rgb '#0072b2' lw 2\n"
-    "set linetype 2 lc rgb '#d55e00' lw 2 dt 2\n"
-    "set linetype 3 lc rgb '#009e73' lw 2 dt 4\n"
-    "set linetype 4 lc rgb '#cc79a7' lw 2 dt 5\n"
-    "set linetype 5 lc rgb '#e69f00' lw 2\n"
-    "set linetype 6 lc rgb '#56b4e9' lw 2 dt 2\n"
-    "set linetype 7 lc rgb '#555555' lw 2 dt 3\n";
+/// Distinct also in grey: Okabe and Ito 2008, darkest first, each with a dash of its own.
+constexpr std::array colours{"#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#555555"};
+constexpr std::array dashes{1, 2, 4, 5, 3};
+constexpr std::array<std::size_t, colours.size()> first_dash{0, 1, 2, 3, 0, 1, 4};
 
 /// Full and open shapes by turns, so that neighbours are told apart in grey too.
 constexpr std::array marks{7, 4, 9, 12, 5, 6, 2};
+static_assert(marks.size() == colours.size());
+
+/// Series beyond the colours begin them again with other dashes and marks: no two of the first 35 look alike.
+constexpr std::size_t line_types = colours.size() * dashes.size();
+
+std::string style_lines() {
+  std::string lines;
+  for (std::size_t i = 0; i < line_types; ++i) {
+    const std::size_t round = i / colours.size();
+    const std::size_t colour = i % colours.size();
+    const int dash = dashes[(first_dash[colour] + round) % dashes.size()];
+    lines += fmt::format("set linetype {} lc rgb '{}' lw 2 dt {}\n", i + 1, colours[colour], dash);
+  }
+  return lines;
+}
 
 /// A gnuplot string: escaped, without control characters and back quotes, which would run a program.
 std::string quoted(const std::string& text) {
@@ -43,7 +53,7 @@ bool has_point(const Series& series) {
 }
 
 std::string drawn(Series::Style style, std::size_t index) {
-  const int mark = marks[index % marks.size()];
+  const int mark = marks[(index + index / colours.size()) % marks.size()];
   switch (style) {
     case Series::Style::line:
       return "with lines";
@@ -130,8 +140,8 @@ void put_plot(std::string& script, const Plot& plot, std::size_t at) {
     if (!has_point(plot.series[s])) continue;
     if (!items.empty()) items += ", ";
     const Series::Style style = plot.series[s].style;
-    items += fmt::format("$d{}_{} using {} {} lt {} title {}", at, s, columns_of(style), drawn(style, s), s % 7 + 1,
-                         quoted(plot.series[s].name));
+    items += fmt::format("$d{}_{} using {} {} lt {} title {}", at, s, columns_of(style), drawn(style, s),
+                         s % line_types + 1, quoted(plot.series[s].name));
   }
   if (items.empty()) items = "[0:1][0:1] 2 notitle";  // an empty frame: gnuplot refuses to draw nothing
   script += "plot " + items + "\n";
@@ -158,7 +168,7 @@ std::vector<std::uint8_t> draw_plots(const PlotSheet& sheet, PlotFormat format) 
   std::string script =
       fmt::format("set terminal {} size {},{} noenhanced font 'DejaVu Sans,{}' background '#ffffff'\n",
                   format == PlotFormat::png ? "pngcairo" : "svg", sheet.width, sheet.height, sheet.font_size);
-  script += style_lines;
+  script += style_lines();
   script += "set encoding utf8\nset grid lc rgb '#cccccc' lw 0.5\nset border lw 0.7\nset tics out nomirror\n";
   script += "set style data lines\nset boxwidth 0.9 relative\nset key tmargin center horizontal noenhanced\n";
   script += fmt::format("set multiplot layout {},{}\n", std::max(1, rows), columns);

@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <limits>
 #include <opencv2/imgcodecs.hpp>
+#include <set>
 #include <string>
 
 #include "ensonify/core/error.hpp"
@@ -73,6 +74,26 @@ TEST(Plot, LineLiesWhereTheAxesSay) {
   };
   EXPECT_TRUE(is_line((left + right) / 2, (top + bottom) / 2));
   EXPECT_TRUE(is_line(left + (right - left) / 4, bottom - (bottom - top) / 4));
+}
+
+// Alone at its place in the list, a series looks like no other: there are nine filters and more.
+TEST(Plot, ManySeriesAreToldApart) {
+  constexpr int many = 20;
+  for (const auto style : {Series::Style::line, Series::Style::marked_line, Series::Style::points_with_errors}) {
+    std::set<std::string> looks;
+    for (int only = 0; only < many; ++only) {
+      Plot plot;
+      plot.x_range = plot.y_range = {{0.0, 20.0}};
+      plot.series.resize(many);
+      for (Series& series : plot.series) series.style = style;
+      Series& seen = plot.series[static_cast<std::size_t>(only)];
+      for (int i = 1; i < 20; ++i) seen.x.push_back(i), seen.y.push_back(i);
+      seen.y_low = seen.y_high = seen.y;
+      const std::vector<std::uint8_t> picture = draw_plots({{plot}, 1, 400, 300});
+      looks.emplace(picture.begin(), picture.end());
+    }
+    EXPECT_EQ(looks.size(), std::size_t{many}) << static_cast<int>(style);
+  }
 }
 
 TEST(Plot, BackdropKeepsItsSides) {

@@ -83,6 +83,12 @@ SonarModel open_sonar(const std::string& path_or_name, const RangeWindow& window
 Scene open_scene(const std::string& path_or_name, std::uint64_t layout) {
   Scene scene = ensonify::open_scene(path_or_name, layout);
   for (const std::string& warning : scene.warnings) fmt::print(std::cerr, "ensonify: warning: {}\n", warning);
+  const std::string extension = std::filesystem::path(path_or_name).extension().string();
+  if (!scene.warnings.empty() && !extension.empty() && extension != ".yaml" && extension != ".yml") {
+    fmt::print(std::cerr,
+               "ensonify: a mesh by itself is taken as metres; unit and scale are keys of an object in a scene YAML "
+               "that names it (docs/getting_started.md)\n");
+  }
   return scene;
 }
 

@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 #include <fmt/ostream.h>
+#include <fmt/ranges.h>
 #include <tbb/global_control.h>
 
 #include <fstream>
@@ -10,6 +11,7 @@
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/cli/progress.hpp"
 #include "ensonify/cli/signals.hpp"
+#include "ensonify/config/library.hpp"
 #include "ensonify/core/error.hpp"
 #include "ensonify/generators/generate.hpp"
 
@@ -93,7 +95,10 @@ void run(const Arguments& arguments) {
 void add_generate(CLI::App& app) {
   auto* command = app.add_subcommand("generate", "Make a dataset from a recipe; the same command again resumes");
   auto a = std::make_shared<Arguments>();
-  command->add_option("RECIPE", a->recipe, "Recipe YAML, or a bundled name: paper, quick")->required();
+  command
+      ->add_option("RECIPE", a->recipe,
+                   fmt::format("Recipe YAML, or a bundled name: {}", fmt::join(library_names("generators"), ", ")))
+      ->required();
   command->add_option("--out", a->out, "Folder of the dataset")->required()->check(some_path());
   command->add_option("--pairs", a->pairs, "Training pairs instead of the recipe's")->check(CLI::Range(1, 100'000'000));
   command->add_option("--seed", a->seed, "Seed instead of the recipe's")

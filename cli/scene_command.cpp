@@ -68,7 +68,7 @@ void add_scene(CLI::App& app) {
   command->require_subcommand(1);
   command->footer(
       "Example:\n  ensonify scene list\n  ensonify scene check my_scene.yaml\n"
-      "  ensonify scene show marina --out out/dam");
+      "  ensonify scene show marina --out out/marina");
   auto* all = command->add_subcommand("list", "Names and titles of the bundled scenes");
   all->footer("Example:\n  ensonify scene list");
   all->callback(list);

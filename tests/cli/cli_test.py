@@ -317,6 +317,7 @@ class Meshes(ProgramTest):
         done = self.succeed("scene", "check", "mm.obj")
         self.assertIn("warning: mm.obj: 2000 m in its largest extent", done.stderr)
         self.assertIn("unit: mm", done.stderr)
+        self.assertIn("unit and scale are keys of an object in a scene YAML", done.stderr)
         self.write("mm.yaml", changed(SCENE, "shape: box\n    length_m: {uniform: [1, 2]}\n    width_m: 1\n    height_m: 2",
                                       "mesh: mm.obj\n    unit: mm"))
         self.assertEqual(self.succeed("scene", "check", "mm.yaml").stderr, "")

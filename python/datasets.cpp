@@ -84,7 +84,8 @@ class PyDataset {
     return result;
   }
 
-  int checked(const std::string& split, int number) const {
+  /// The split's place in the set; a number below 0 becomes one counted from the end, as Recipe.make_frame takes it.
+  int checked(const std::string& split, int& number) const {
     std::vector<std::string> names;
     for (const DatasetSplit& s : dataset_.splits) names.push_back(s.name);
     const auto found = std::ranges::find(names, split);
@@ -93,6 +94,7 @@ class PyDataset {
     }
     const int at = static_cast<int>(found - names.begin());
     const int frames = dataset_.splits[static_cast<std::size_t>(at)].frames;
+    if (number < 0) number += frames;
     if (number < 0 || number >= frames) {
       throw py::index_error(fmt::format("split {} has frames 0 to {}", split, frames - 1));
     }
@@ -142,7 +144,7 @@ void bind_datasets(py::module_& m) {
            "reads\n"
            "the frame's shard. Raises IndexError, ConfigError, DataError.")
       .def("info", &PyDataset::info, py::arg("split"), py::arg("number"),
-           "The frame's line of metadata.jsonl as a dict.")
+           "The frame's line of metadata.jsonl as a dict. Numbers below 0 count from the end, here as in `images`.")
       .def("truth", &PyDataset::truth, py::arg("split"), py::arg("number"),
            "dict of the channels of truth/*.exr (docs/datasets.md). Raises DataError where the set has none.")
       .def("grid", &PyDataset::grid, py::arg("place"), "Ground truth of a place.");

@@ -58,8 +58,9 @@ class FrameDataset:
         return self._frames
 
     def __getitem__(self, index: int) -> typing.Any:
-        if index < 0:
-            index += self._frames
+        if not -self._frames <= index < self._frames:
+            raise IndexError(f"split {self.split} has frames 0 to {self._frames - 1}")
+        index %= self._frames
         sample: Sample = self._dataset.images(self.split, index, list(self.fields))
         info = self._dataset.info(self.split, index)
         sample["pose"] = numpy.array(info["T_world_sonar"], dtype=numpy.float64).reshape(4, 4)

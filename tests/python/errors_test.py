@@ -129,7 +129,9 @@ class Wrong(ModuleTest):
     def test_datasets(self):
         dataset = ensonify.open_dataset(self.generate("set", recipe=self.recipe(train=4, test=2)))
         self.refuse(IndexError, "frames 0 to 3", lambda: dataset.images("train", 4))
-        self.refuse(IndexError, "frames 0 to 3", lambda: dataset.info("train", -1))
+        self.refuse(IndexError, "frames 0 to 3", lambda: dataset.info("train", -5))
+        self.assertEqual(dataset.info("train", -1), dataset.info("train", 3))
+        self.assertSameBits(dataset.images("train", -4)["raw"], dataset.images("train", 0)["raw"])
         self.refuse(ensonify.ConfigError, "train, test", lambda: dataset.images("val", 0))
         self.refuse(ensonify.ConfigError, "raw, clean, mask, labels", lambda: dataset.images("train", 0, ["image"]))
         self.refuse(ensonify.DataError, "truth", lambda: dataset.truth("train", 0))

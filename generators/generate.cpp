@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <atomic>
 #include <exception>
-#include <functional>
 #include <mutex>
 #include <nlohmann/json.hpp>
 
@@ -21,17 +20,22 @@ namespace {
 
 /// A broken scene or a trajectory into a wall is a mistake in the configuration: found before anything is written, so
 /// that the corrected one may use the folder. Places take a while to build; what is built is kept.
-void check_places(const FrameMaker& maker, const std::function<bool()>& stopped) {
+void check_places(const FrameMaker& maker, const GenerateOptions& options) {
   // Of several mistakes the first is reported, whichever thread is faster.
   std::vector<std::exception_ptr> mistakes(maker.places().size());
-  parallel_for(static_cast<int>(mistakes.size()), [&](int place) {
-    if (stopped()) return;
+  std::mutex mutex;
+  Progress progress{.total = static_cast<int>(mistakes.size()), .stage = "places"};
+  parallel_for(progress.total, [&](int place) {
+    if (options.stopped()) return;
     try {
       maker.place(place);
       maker.check_trajectory(place);
     } catch (...) {
       mistakes[static_cast<std::size_t>(place)] = std::current_exception();
     }
+    const std::scoped_lock guard(mutex);
+    progress.fresh = ++progress.done;
+    options.on_progress(progress);
   });
   for (const std::exception_ptr& mistake : mistakes) {
     if (mistake) std::rethrow_exception(mistake);
@@ -86,7 +90,7 @@ Outcome generate(const Recipe& recipe, const GenerateOptions& options) {
   const DatasetPaths paths{options.out};
   const std::string plan = plan_json(maker, options.isa, options.format);
   check_folder_for(paths, plan, options.force);
-  if (!is_complete(paths, plan)) check_places(maker, options.stopped);
+  if (!is_complete(paths, plan)) check_places(maker, options);
   if (options.stopped()) return Outcome::stopped;
   const FolderLock in_use = prepare_dataset(paths, plan, options.force);
   std::error_code no_throw;

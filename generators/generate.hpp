@@ -9,7 +9,7 @@
 namespace ensonify {
 
 struct Progress {
-  int done = 0;   ///< frames (of the stage grids: places) finished, those of earlier runs included
+  int done = 0;   ///< frames (of the stages places and grids: places) finished, those of earlier runs included
   int fresh = 0;  ///< of them made in this run
   int total = 0;
   const char* stage = "frames";

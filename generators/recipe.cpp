@@ -14,7 +14,7 @@
 #include "ensonify/core/error.hpp"
 #include "ensonify/generators/drift.hpp"
 #include "ensonify/generators/read_trajectory.hpp"
-#include "ensonify/sensor_models/sonar_model.hpp"
+#include "ensonify/generators/recipe_window.hpp"
 
 namespace ensonify {
 namespace {
@@ -105,44 +105,6 @@ std::vector<std::string> read_noise(Reader& file) {
   }
   if (profiles.empty()) file.fail("noise", "needs at least one profile; none is a profile too");
   return profiles;
-}
-
-/// Every window that a frame can have is one that the instrument can be set to.
-void check_window(const Reader& file, const Recipe& recipe) {
-  const SonarModel instrument = load_sonar(recipe.sonar);
-  const double begin_m = recipe.range_min_m.value_or(instrument.geometry.range_min_m);
-  const std::string rule = fmt::format("must lie within the {} to {} m of {}", instrument.instrument_range_min_m,
-                                       instrument.instrument_range_max_m, instrument.name);
-  if (begin_m < instrument.instrument_range_min_m) file.fail("range_min_m", fmt::format("{}, not {}", rule, begin_m));
-  std::vector<RangeWindow> windows;
-  if (recipe.range_max_m) {
-    const Limits ends = ends_of(*recipe.range_max_m);
-    for (const double end_m : {ends.low, ends.high}) {
-      if (end_m > instrument.instrument_range_max_m) {
-        file.fail("range_max_m", fmt::format("{}, not {}", rule, end_m));
-      }
-      if (end_m <= begin_m) {
-        file.fail("range_max_m",
-                  fmt::format("can be {} m, where the window begins at {} m; it must end beyond", end_m, begin_m));
-      }
-      windows.push_back({recipe.range_min_m, end_m, recipe.range_bins});
-    }
-  }
-  if (!recipe.range_max_m || !std::holds_alternative<Constant>(*recipe.range_max_m)) {
-    // A set whose windows differ is described by the instrument's own.
-    if (begin_m >= instrument.geometry.range_max_m) {
-      file.fail("range_min_m", fmt::format("must lie below the {} m that the window of {} ends at, not {}",
-                                           instrument.geometry.range_max_m, instrument.name, begin_m));
-    }
-    windows.push_back({recipe.range_min_m, {}, recipe.range_bins});
-  }
-  for (const RangeWindow& window : windows) {
-    try {
-      load_sonar(recipe.sonar, window);
-    } catch (const ConfigError& e) {
-      file.fail(recipe.range_bins ? "range_bins" : "range_max_m", e.what());
-    }
-  }
 }
 
 /// Why a split can not have its number of frames, and the key whose rule that is.

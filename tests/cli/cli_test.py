@@ -5,86 +5,15 @@ import json
 import pathlib
 import re
 import shlex
-import struct
 import sys
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
-from support import ProgramTest, RECIPE, SCENE, SONAR, files, leftovers, main, manifest, read_grey
+from mesh_files import TRIANGLE_DAE
+from support import ProgramTest, RECIPE, SCENE, SONAR, changed, files, leftovers, main, manifest, read_grey
 
 COMMANDS = ["", "evaluate", "evaluate filters", "evaluate map", "explore", "filter", "generate", "map", "ping", "reproduce", "scene",
             "scene list", "scene check", "scene show", "scene export", "sonar", "sonar list", "sonar check", "sonar show",
             "stats", "verify", "voxelize"]
-
-CUBE_OBJ = """v -1 -1 -1
-v 1 -1 -1
-v 1 1 -1
-v -1 1 -1
-v -1 -1 1
-v 1 -1 1
-v 1 1 1
-v -1 1 1
-f 1 4 3 2
-f 5 6 7 8
-f 1 2 6 5
-f 2 3 7 6
-f 3 4 8 7
-f 4 1 5 8
-"""
-
-
-def cube_stl():
-    """Binary, the triangles of CUBE_OBJ."""
-    v = [tuple(map(float, line.split()[1:])) for line in CUBE_OBJ.splitlines() if line[0] == "v"]
-    quads = [[int(i) - 1 for i in line.split()[1:]] for line in CUBE_OBJ.splitlines() if line[0] == "f"]
-    triangles = [t for q in quads for t in ((q[0], q[1], q[2]), (q[0], q[2], q[3]))]
-    body = b"".join(struct.pack("<12fH", 0, 0, 0, *v[a], *v[b], *v[c], 0) for a, b, c in triangles)
-    return bytes(80) + struct.pack("<I", len(triangles)) + body
-
-
-def cube_ply():
-    lines = CUBE_OBJ.splitlines()
-    vertices = [line[2:] for line in lines if line[0] == "v"]
-    faces = ["4 " + " ".join(str(int(i) - 1) for i in line.split()[1:]) for line in lines if line[0] == "f"]
-    return ("ply\nformat ascii 1.0\nelement vertex 8\nproperty float x\nproperty float y\nproperty float z\n"
-            "element face 6\nproperty list uchar int vertex_indices\nend_header\n" + "\n".join(vertices + faces) + "\n")
-
-
-def triangle_glb():
-    positions = struct.pack("<9f", 0, 0, 0, 1, 0, 0, 0, 1, 0)
-    scene = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-             "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}], "buffers": [{"byteLength": 36}],
-             "bufferViews": [{"buffer": 0, "byteLength": 36}],
-             "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3",
-                            "min": [0, 0, 0], "max": [1, 1, 0]}]}
-    text = json.dumps(scene).encode()
-    text += b" " * (-len(text) % 4)
-    chunks = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", 36, 0x004E4942) + positions
-    return struct.pack("<III", 0x46546C67, 2, 12 + len(chunks)) + chunks
-
-
-TRIANGLE_DAE = """<?xml version="1.0"?>
-<COLLADA xmlns="http://www.collada.org/2005/11/COLLADASchema" version="1.4.1">
-<asset><unit name="meter" meter="1"/><up_axis>Z_UP</up_axis></asset>
-<library_geometries><geometry id="g"><mesh>
-<source id="p"><float_array id="a" count="9">0 0 0 1 0 0 0 1 0</float_array><technique_common>
-<accessor source="#a" count="3" stride="3"><param name="X" type="float"/><param name="Y" type="float"/>
-<param name="Z" type="float"/></accessor></technique_common></source>
-<vertices id="v"><input semantic="POSITION" source="#p"/></vertices>
-<triangles count="1"><input semantic="VERTEX" source="#v" offset="0"/><p>0 1 2</p></triangles>
-</mesh></geometry></library_geometries>
-<library_visual_scenes><visual_scene id="s"><node><instance_geometry url="#g"/></node></visual_scene></library_visual_scenes>
-<scene><instance_visual_scene url="#s"/></scene></COLLADA>
-"""
-
-WHOLE_MESHES = {"cube.obj": CUBE_OBJ.encode(), "cube.stl": cube_stl(), "cube.ply": cube_ply().encode(),
-                "triangle.glb": triangle_glb(), "triangle.dae": TRIANGLE_DAE.encode()}
-
-
-def changed(text, old, new):
-    if old not in text:
-        raise AssertionError(f"'{old}' is not there to be changed")
-    return text.replace(old, new, 1)
-
 
 class Help(ProgramTest):
     def help_of(self, command):
@@ -284,94 +213,6 @@ class Configuration(ProgramTest):
                     "--progress", "none")
         self.assertFalse((self.folder / "tight/dataset.json").exists())
         self.assertTrue((self.folder / "tight/.ensonify/failed.jsonl").is_file())
-
-
-class Meshes(ProgramTest):
-    def test_whole_ones_are_read(self):
-        for name, data in WHOLE_MESHES.items():
-            with self.subTest(name):
-                self.write(name, data)
-                self.assertIn("valid", self.succeed("scene", "check", name).stdout)
-
-    def test_truncated_and_garbage_ones_are_refused(self):
-        for name, data in WHOLE_MESHES.items():
-            # Text formats cut anywhere but at the end of a line; .obj has no end mark, so there a face loses its corner.
-            cuts = [len(data) // 2 + 1, len(data) * 9 // 10] if not name.endswith(".obj") else []
-            bad = {f"cut at {c}": data[:c] for c in cuts}
-            bad["one byte"] = data[:1]
-            bad["garbage"] = bytes((i * 97 + 13) % 256 for i in range(4000))
-            bad["zeros"] = bytes(4000)
-            if name.endswith(".obj"):
-                bad["face of a missing vertex"] = data + b"f 1 2 99\n"
-                bad["vertices alone"] = data[:data.index(b"f ")]
-            for what, content in bad.items():
-                with self.subTest(f"{name} {what}"):
-                    self.write(name, content)
-                    done = self.refuse(1, [name], "scene", "check", name)
-                    self.assertNotIn("valid\n", done.stdout)
-
-    def test_one_in_millimetres_is_warned_of_and_a_unit_cures_it(self):
-        vertices = [f"v {' '.join(str(1000 * float(x)) for x in line.split()[1:])}" if line[0] == "v" else line
-                    for line in CUBE_OBJ.splitlines()]
-        self.write("mm.obj", "\n".join(vertices))
-        done = self.succeed("scene", "check", "mm.obj")
-        self.assertIn("warning: mm.obj: 2000 m in its largest extent", done.stderr)
-        self.assertIn("unit: mm", done.stderr)
-        self.assertIn("unit and scale are keys of an object in a scene YAML", done.stderr)
-        self.write("mm.yaml", changed(SCENE, "shape: box\n    length_m: {uniform: [1, 2]}\n    width_m: 1\n    height_m: 2",
-                                      "mesh: mm.obj\n    unit: mm"))
-        self.assertEqual(self.succeed("scene", "check", "mm.yaml").stderr, "")
-
-    def test_one_that_names_files_elsewhere_reads_none(self):
-        secret = self.write("secret.bin", bytes(64))
-        (self.folder / "meshes").mkdir()
-        for uri in (str(secret), "../secret.bin", "/dev/zero", "/etc/passwd"):
-            scene = {"asset": {"version": "2.0"}, "scene": 0, "scenes": [{"nodes": [0]}], "nodes": [{"mesh": 0}],
-                     "meshes": [{"primitives": [{"attributes": {"POSITION": 0}}]}],
-                     "buffers": [{"byteLength": 36, "uri": uri}], "bufferViews": [{"buffer": 0, "byteLength": 36}],
-                     "accessors": [{"bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3"}]}
-            self.write("meshes/evil.gltf", json.dumps(scene))
-            with self.subTest(uri):
-                self.refuse(1, ["evil.gltf"], "scene", "check", "meshes/evil.gltf")
-
-
-class Void(ProgramTest):
-    """Scenes whose truth holds nothing of what they describe are valid, and seldom meant."""
-
-    def check(self, changes, fragments):
-        scene = SCENE
-        for old, new in changes:
-            self.assertIn(old, scene)
-            scene = scene.replace(old, new)
-        self.write("own_scene.yaml", scene)
-        for words in (("scene", "check", "own_scene.yaml"),
-                      ("voxelize", "own_scene.yaml", "--resolution", 0.2, "--out", "truth.npz")):
-            said = self.succeed(*words).stderr
-            for fragment in fragments:
-                self.assertIn(f"ensonify: warning: own_scene: {fragment}", said)
-            self.assertEqual(said.count("warning"), len(fragments), said)
-
-    def test_of_what_is_no_cell(self):
-        alone = ("    on_seabed: true\n", "")
-        pose = "pose: {x_m: {uniform: [-1, 1]}}"
-        self.check([], [])
-        self.check([("depth_m: 4,", "depth_m: 14,"), alone, (pose, "pose: [0, 0, -2]")],
-                   ["seabed has no cell in the truth: it lies outside of bounds"])
-        self.check([alone, (pose, "pose: [40, 0, -2]")], ["block has no cell in the truth"])
-        self.check([("length_m: {uniform: [1, 2]}", "length_m: 11"), ("width_m: 1", "width_m: 11"),
-                    ("height_m: 2", "height_m: 3.9"), (SCENE[SCENE.index("waypoints"):], "")],
-                   ["navigable, (-5, -5, -3.4) to (5, 5, -0.6) m, has no free cell"])
-        self.check([(SCENE[SCENE.index("seabed"):], "surface: {roughness_m: 0.03, wavelength_m: 3, spacing_m: 0.5}\n")], ["nothing in it is an obstacle"])
-
-    def test_of_bundled_places_none(self):
-        for name in ("test_tank", "pier_harbor", "boulder_field", "ferry_berth"):  # parts and copies, some out of the water
-            self.assertEqual(self.succeed("scene", "check", name).stderr, "")
-
-    def test_what_is_watertight_is_said_to_be(self):
-        self.write("cube.obj", CUBE_OBJ)
-        self.assertIn("watertight", self.succeed("scene", "check", "cube.obj").stdout)
-        self.write("open.obj", CUBE_OBJ[:CUBE_OBJ.rindex("f ")])
-        self.assertIn("not watertight (4 open edges)", self.succeed("scene", "check", "open.obj").stdout)
 
 
 class Output(ProgramTest):

@@ -72,6 +72,12 @@ splits:
 """
 
 
+def changed(text, old, new):
+    if old not in text:
+        raise AssertionError(f"'{old}' is not there to be changed")
+    return text.replace(old, new, 1)
+
+
 class ProgramTest(unittest.TestCase):
     """A test in a temporary folder of its own, holding small_sonar.yaml and block.yaml."""
 

@@ -12,7 +12,7 @@ import zipfile
 
 sys.path.insert(0, str(pathlib.Path(__file__).parent))
 sys.path.insert(0, str(pathlib.Path(__file__).parent.parent / "cli"))
-from cli_test import CUBE_OBJ, TRIANGLE_DAE, WHOLE_MESHES, cube_ply, cube_stl, triangle_glb  # noqa: E402
+from mesh_files import CUBE_OBJ, TRIANGLE_DAE, WHOLE_MESHES, cube_ply, cube_stl, triangle_glb  # noqa: E402
 from faults import FaultTest  # noqa: E402
 from support import main  # noqa: E402
 

@@ -14,24 +14,44 @@
 #include "ensonify/generators/lost_files.hpp"
 #include "ensonify/generators/write_block.hpp"
 #include "ensonify/output/atomic_file.hpp"
+#include "ensonify/scenes/scene.hpp"
 
 namespace ensonify {
 namespace {
 
 /// A broken scene or a trajectory into a wall is a mistake in the configuration: found before anything is written, so
-/// that the corrected one may use the folder. Places take a while to build; what is built is kept.
+/// that the corrected one may use the folder. A place that is swum is built for it, and kept. Of the others only the
+/// recipe's own scenes are read: bundled ones are known to be whole, and places are best built while frames are made.
 void check_places(const FrameMaker& maker, const GenerateOptions& options) {
+  struct Check {
+    int place;
+    const PlaceRef* ref;
+    bool swum;
+  };
+  std::vector<Check> checks;
+  int place = 0;
+  for (const Split& split : maker.recipe().splits) {
+    const bool swum = std::holds_alternative<TrajectoryPoses>(split.poses);
+    for (const PlaceRef& ref : split.places) {
+      std::error_code no_throw;
+      if (swum || std::filesystem::is_regular_file(ref.scene, no_throw)) checks.push_back({place, &ref, swum});
+      ++place;
+    }
+  }
   // Of several mistakes the first is reported, whichever thread is faster.
-  std::vector<std::exception_ptr> mistakes(maker.places().size());
+  std::vector<std::exception_ptr> mistakes(checks.size());
   std::mutex mutex;
-  Progress progress{.total = static_cast<int>(mistakes.size()), .stage = "places"};
-  parallel_for(progress.total, [&](int place) {
+  Progress progress{.total = static_cast<int>(checks.size()), .stage = "places"};
+  parallel_for(progress.total, [&](int i) {
+    const Check& check = checks[static_cast<std::size_t>(i)];
     if (options.stopped()) return;
     try {
-      maker.place(place);
-      maker.check_trajectory(place);
+      if (check.swum)
+        maker.check_trajectory(check.place);
+      else
+        load_scene(check.ref->scene, check.ref->layout);
     } catch (...) {
-      mistakes[static_cast<std::size_t>(place)] = std::current_exception();
+      mistakes[static_cast<std::size_t>(i)] = std::current_exception();
     }
     const std::scoped_lock guard(mutex);
     progress.fresh = ++progress.done;

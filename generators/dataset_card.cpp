@@ -33,9 +33,9 @@ std::string describe_rows(const Recipe& recipe, const json& sonar) {
   };
   const int fewest = bins(ends.low);
   const int most = bins(ends.high);
-  return fmt::format(
-      "{} range bins (rows, nearest first, from {} m to an end that is drawn for each frame, {} to {} m)",
-      fewest == most ? fmt::format("{}", fewest) : fmt::format("{} to {}", fewest, most), begin_m, ends.low, ends.high);
+  return fmt::format("{} range bins (rows, nearest first, from {} m to an end that is drawn, {} to {} m)",
+                     fewest == most ? fmt::format("{}", fewest) : fmt::format("{} to {}", fewest, most), begin_m,
+                     ends.low, ends.high);
 }
 
 }  // namespace

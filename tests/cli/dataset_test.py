@@ -98,7 +98,7 @@ class SameBits(ProgramTest):
 
     def test_the_card_says_what_range_is_drawn(self):
         for name, given, said in (("drawn", "{uniform: [4, 8]}", "128 range bins (rows, nearest first, from 0.2 m to an end "
-                                   "that is drawn for each frame, 4 to 8 m)"),
+                                   "that is drawn, 4 to 8 m)"),
                                   ("fixed", "8", "128 range bins (rows, nearest first, 0.2 to 8 m)")):
             self.recipe(f"{name}.yaml", train=2, test=2, range_max_m=given)
             self.assertIn(said, (self.generate(name, recipe=f"{name}.yaml") / "README.md").read_text())

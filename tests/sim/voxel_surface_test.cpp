@@ -37,19 +37,24 @@ BitGrid marked(const Triangle& t) {
   return surface;
 }
 
-/// Every cell that the triangle touches is marked, none that it misses by more than twice the margin.
-void expect_conservative(const Triangle& t) {
-  const BitGrid surface = marked(t);
+/// Calls check(centre, marked) for every cell but those of the rim.
+template <typename Check>
+void for_each_cell(const BitGrid& surface, const Check& check) {
   for (int z = 1; z + 1 < box_size[2]; ++z) {
     for (int y = 1; y + 1 < box_size[1]; ++y) {
       for (int x = 1; x + 1 < box_size[0]; ++x) {
-        const Vec3 centre(box_low[0] + x + 0.5, box_low[1] + y + 0.5, box_low[2] + z + 0.5);
-        const bool is = surface.test(x, y, z);
-        ASSERT_TRUE(is || !touches(t, centre, 0.5)) << "missed " << centre.transpose();
-        ASSERT_TRUE(!is || touches(t, centre, 0.5 + 2.5 * surface_margin_cells)) << "extra " << centre.transpose();
+        check(Vec3(box_low[0] + x + 0.5, box_low[1] + y + 0.5, box_low[2] + z + 0.5), surface.test(x, y, z));
       }
     }
   }
+}
+
+/// Every cell that the triangle touches is marked, none that it misses by more than twice the margin.
+void expect_conservative(const Triangle& t) {
+  for_each_cell(marked(t), [&](const Vec3& centre, bool is) {
+    ASSERT_TRUE(is || !touches(t, centre, 0.5)) << "missed " << centre.transpose();
+    ASSERT_TRUE(!is || touches(t, centre, 0.5 + 2.5 * surface_margin_cells)) << "extra " << centre.transpose();
+  });
 }
 
 /// Points all over the triangle, its edges and corners included, lie in marked cells.
@@ -112,18 +117,10 @@ TEST(VoxelSurface, FacesOnCellBordersMarkTheLayerBehindThem) {
     const Vec3 n = (face[1] - face[0]).cross(face[2] - face[0]);
     for (Vec3& p : behind) p[axis] -= std::copysign(0.5, n[axis]);
     for (Vec3& p : face) p[axis] += 0.9 * surface_margin_cells * random.uniform(-1, 1);
-    const BitGrid surface = marked(face);
-    for (int z = 1; z + 1 < box_size[2]; ++z) {
-      for (int y = 1; y + 1 < box_size[1]; ++y) {
-        for (int x = 1; x + 1 < box_size[0]; ++x) {
-          const Vec3 centre(box_low[0] + x + 0.5, box_low[1] + y + 0.5, box_low[2] + z + 0.5);
-          const bool is = surface.test(x, y, z);
-          ASSERT_TRUE(is || !touches(behind, centre, 0.5 - 2.5 * surface_margin_cells))
-              << "missed " << centre.transpose();
-          ASSERT_TRUE(!is || touches(behind, centre, 0.5)) << "extra " << centre.transpose();
-        }
-      }
-    }
+    for_each_cell(marked(face), [&](const Vec3& centre, bool is) {
+      ASSERT_TRUE(is || !touches(behind, centre, 0.5 - 2.5 * surface_margin_cells)) << "missed " << centre.transpose();
+      ASSERT_TRUE(!is || touches(behind, centre, 0.5)) << "extra " << centre.transpose();
+    });
   }
 }
 

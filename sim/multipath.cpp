@@ -13,7 +13,7 @@ namespace ensonify {
 namespace {
 
 constexpr int columns = 256;
-constexpr int usual_tiles = 512;
+constexpr int usual_tiles = 1024;
 constexpr double most_samples = 1024;
 
 /// Half as many cells as tiles: the rest goes where the paths are.

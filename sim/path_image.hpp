@@ -9,6 +9,13 @@
 
 namespace ensonify {
 
+/// Energy that is spread evenly over ranges, as second differences: `density` begins in near_bin, of which `near_next`
+/// in the bin after it, and ends likewise.
+struct PathBox {
+  int near_bin, far_bin;
+  float density, near_next, far_next;
+};
+
 /// Collects energy in boxes of range, column by column of a PathFan. Keeps second differences, so that a box costs four
 /// additions however long it is; in double, so that their sums leave no trace of the strong in the weak.
 class PathImage {
@@ -20,18 +27,28 @@ class PathImage {
 
   /// Energy spread evenly from centre - extent / 2 to centre + extent / 2, but not nearer than nearest_m, and over a
   /// bin at least. What lies outside of the window is lost.
-  void add(int column, float centre_m, float extent_m, float nearest_m, float energy) {
-    float near = bins_.place_of(std::max(centre_m - 0.5f * extent_m, nearest_m));
-    float far = bins_.place_of(centre_m + 0.5f * extent_m);
-    const float lacking = std::max(0.0f, 1.0f - (far - near));
-    near -= 0.5f * lacking;
-    far += 0.5f * lacking;
-    const auto count = static_cast<float>(bins_.count);
-    if (!(far > 0.0f && near < count)) return;
-    const double density = static_cast<double>(energy) / static_cast<double>(far - near);
+  PathBox box(float centre_m, float extent_m, float nearest_m, float energy) const {
+    const auto last = static_cast<float>(bins_.count);
+    const float from_m = centre_m - 0.5f * extent_m;
+    const float begin = bins_.place_of(from_m > nearest_m ? from_m : nearest_m);
+    const float end = bins_.place_of(centre_m + 0.5f * extent_m);
+    const float lacking = end - begin < 1.0f ? 0.5f * (1.0f - (end - begin)) : 0.0f;
+    const float density = energy / (end - begin + 2.0f * lacking);
+    const float near = within(begin - lacking, last);
+    const float far = within(end + lacking, last);
+    const int near_bin = static_cast<int>(near);
+    const int far_bin = static_cast<int>(far);
+    return {near_bin, far_bin, density, density * (near - static_cast<float>(near_bin)),
+            density * (far - static_cast<float>(far_bin))};
+  }
+
+  void add(int column, const PathBox& box) {
     double* at = differences_.data() + static_cast<std::size_t>(column) * stride_;
-    step(at, std::max(near, 0.0f), density);
-    step(at, std::min(far, count), -density);
+    const double density = box.density;
+    at[box.near_bin] += density - static_cast<double>(box.near_next);
+    at[box.near_bin + 1] += static_cast<double>(box.near_next);
+    at[box.far_bin] -= density - static_cast<double>(box.far_next);
+    at[box.far_bin + 1] -= static_cast<double>(box.far_next);
   }
 
   /// False where `add` would lose such a box, wherever its energy arrives.
@@ -86,11 +103,9 @@ class PathImage {
     }
   }
 
-  static void step(double* at, float place, double density) {
-    const int bin = static_cast<int>(place);
-    const double within = static_cast<double>(place - static_cast<float>(bin));
-    at[bin] += density * (1.0 - within);
-    at[bin + 1] += density * within;
+  static float within(float place, float last) {
+    const float above = place > 0.0f ? place : 0.0f;
+    return above < last ? above : last;
   }
 
   RangeBins bins_;

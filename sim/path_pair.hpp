@@ -49,19 +49,17 @@ inline PathPair path_pair(const PathPoints& a, int i, const PathPoints& b, int j
   const bistatic::Scattered at_b =
       bistatic::scatter({b.mu[j], b.specular[j], b.exponent[j], b.lobe_share[j]}, b.cos_sonar[j], facing_b, -along_b);
   // d^2 times densities; the walk's solid angle is dA cos / d^2.
-  const float to_a =
-      walks_per_point * b.density[j] * at_b.pdf * a.range_m[i] * a.range_m[i] * facing_a / a.cos_sonar[i];
-  const float to_b =
-      walks_per_point * a.density[i] * at_a.pdf * b.range_m[j] * b.range_m[j] * facing_b / b.cos_sonar[j];
+  const float to_a = walks_per_point * b.density[j] * at_b.pdf * a.area_m2[i] * facing_a;
+  const float to_b = walks_per_point * a.density[i] * at_a.pdf * b.area_m2[j] * facing_b;
   const float join = (joining ? d2 * joined_share : 0.0f) * a.density[i] * b.density[j];
-  const float density = join + to_a + to_b;
-  const float energy = a.send[i] * b.send[j] * at_a.sigma * at_b.sigma / density;
+  const float share = 1.0f / (join + to_a + to_b);
+  const float energy = a.send[i] * b.send[j] * at_a.sigma * at_b.sigma * share;
 
   const float au = (a.dx[i] + ex) * a.ux[i] + (a.dy[i] + ey) * a.uy[i] + (a.dz[i] + ez) * a.uz[i];
   const float av = (a.dx[i] + ex) * a.vx[i] + (a.dy[i] + ey) * a.vy[i] + (a.dz[i] + ez) * a.vz[i];
   const float bu = (b.dx[j] - ex) * b.ux[j] + (b.dy[j] - ey) * b.uy[j] + (b.dz[j] - ez) * b.uz[j];
   const float bv = (b.dx[j] - ex) * b.vx[j] + (b.dy[j] - ey) * b.vy[j] + (b.dz[j] - ez) * b.vz[j];
-  const float extent = 0.5f * std::sqrt((au * au + av * av + bu * bu + bv * bv) * (join / density));
+  const float extent = 0.5f * std::sqrt((au * au + av * av + bu * bu + bv * bv) * (join * share));
   return {facing ? energy : 0.0f, 0.5f * (a.range_m[i] + d2 * inverse_d + b.range_m[j]), extent};
 }
 

@@ -4,8 +4,6 @@
 #include <array>
 #include <cstdint>
 #include <cstring>
-#include <limits>
-#include <vector>
 
 #include "ensonify/core/lanes.hpp"
 #include "ensonify/sim/path_pair.hpp"
@@ -17,15 +15,6 @@ constexpr int pairs = joined_points * packet_lanes;
 
 /// 2^32 over the golden ratio: multiples are spread evenly (Knuth 1998, 6.4).
 constexpr std::uint32_t golden = 2654435769u;
-/// 2^32 over the plastic number (Roberts 2018): a second sequence beside the first.
-constexpr std::uint32_t plastic = 3242174889u;
-
-/// A group that holds less than this many times the mean of what its tiles' groups are likely to hold is asked for
-/// rarely and counted the more often (Russian roulette, Arvo and Kirk 1990): half of the groups hold a hundredth of the
-/// energy, and noise comes from the others.
-constexpr float sparing = 2.0f;
-/// What is dim for both of its ends keeps some rays.
-constexpr float least_chance = 0.125f;
 
 /// Points of one tile against a packet each of one block.
 struct Group {
@@ -36,7 +25,6 @@ struct Group {
   const PathPoints* to[joined_points];
   int lane;
   bool both_ends;
-  float weight;  ///< 1 over the chance of being asked for
 };
 
 static_assert(packet_lanes == lane_count);
@@ -100,40 +88,47 @@ bool reaches_window(const Group& group, const PathImage& image) {
   return false;
 }
 
+/// Eight boxes, computed side by side.
+struct alignas(32) Boxes {
+  int near_bin[packet_lanes], far_bin[packet_lanes];
+  float density[packet_lanes], near_next[packet_lanes], far_next[packet_lanes];
+
+  Boxes(const Group& group, int q, const float* nearest_m, const PathImage& image) {
+    for (int l = 0; l < packet_lanes; ++l) {
+      const int k = q * packet_lanes + l;
+      const PathBox box = image.box(group.half_length_m[k], group.extent_m[k], nearest_m[l], group.energy[k]);
+      near_bin[l] = box.near_bin, far_bin[l] = box.far_bin;
+      density[l] = box.density, near_next[l] = box.near_next, far_next[l] = box.far_next;
+    }
+  }
+  PathBox operator[](int l) const { return {near_bin[l], far_bin[l], density[l], near_next[l], far_next[l]}; }
+};
+
 void add(const Group& group, PathImage& image) {
-  for (int k = 0; k < pairs; ++k) {
-    if (group.energy[k] <= 0.0f) continue;
-    const PathPoints& a = *group.to[k / packet_lanes];
-    const PathPoints& b = *group.from[k / packet_lanes];
-    const int l = k % packet_lanes;
-    const float half_length = group.half_length_m[k];
-    const float extent = group.extent_m[k];
-    const float energy = group.weight * group.energy[k];
-    image.add(b.column[group.lane], half_length, extent, b.range_m[group.lane], energy);
-    if (group.both_ends) image.add(a.column[l], half_length, extent, a.range_m[l], energy);
+  for (int q = 0; q < joined_points; ++q) {
+    const float* energy = group.energy + q * packet_lanes;
+    if (*std::max_element(energy, energy + packet_lanes) <= 0.0f) continue;
+    const PathPoints& a = *group.to[q];
+    const PathPoints& b = *group.from[q];
+    float nearest_m[packet_lanes];
+    std::fill(nearest_m, nearest_m + packet_lanes, b.range_m[group.lane]);
+    const Boxes at_b(group, q, nearest_m, image);
+    for (int l = 0; l < packet_lanes; ++l) {
+      if (energy[l] > 0.0f) image.add(b.column[group.lane], at_b[l]);
+    }
+    if (!group.both_ends) continue;
+    const Boxes at_a(group, q, a.range_m, image);
+    for (int l = 0; l < packet_lanes; ++l) {
+      if (energy[l] > 0.0f) image.add(a.column[l], at_a[l]);
+    }
   }
 }
 
 float unit_of(std::uint32_t word) { return static_cast<float>(word >> 8) * 0x1p-24f; }
 
-/// What is little for a group of each tile; for every block, of its tiles the least.
-struct Little {
-  std::vector<float> tile, block;
-
-  Little(const PathTiles& tiles, int blocks) {
-    for (const PathTiles::Tile& t : tiles.tiles()) {
-      if (tile.size() % packet_lanes == 0) block.push_back(std::numeric_limits<float>::max());
-      tile.push_back(sparing * tiles.expected(t.cell) / static_cast<float>(blocks));
-      block.back() = std::min(block.back(), tile.back());
-    }
-    tile.resize(static_cast<std::size_t>(blocks) * packet_lanes, 0.0f);
-  }
-};
-
 }  // namespace
 
 void add_joined_pairs(const PathView& view, const PathHits& hits, PathImage& image) {
-  const Little little(view.tiles, hits.blocks);
   std::array<Group, packet_lanes> groups;
   RayPacket rays;
   int waiting = 0;
@@ -161,13 +156,8 @@ void add_joined_pairs(const PathView& view, const PathHits& hits, PathImage& ima
           group.to[q] = &hits.of(other, point ^ shift);
         }
         const float sum = evaluate(group);
-        if (!(sum > 0.0f)) continue;
-        ++asked;
-        const float few = std::min(little.tile[one * packet_lanes + tile], little.block[other]);
-        const float chance = sum < few ? std::max(sum / few, least_chance) : 1.0f;
-        if (unit_of(asked * plastic) >= chance || !reaches_window(group, image)) continue;
-        group.weight = 1.0f / chance;
-        const int k = pick(group, sum, unit_of(asked * golden));
+        if (!(sum > 0.0f) || !reaches_window(group, image)) continue;
+        const int k = pick(group, sum, unit_of(golden * ++asked));
         const Eigen::Vector3f start = lifted(*group.from[k / packet_lanes], tile, view.axes);
         rays.origin[waiting] = start;
         rays.direction[waiting] = lifted(*group.to[k / packet_lanes], k % packet_lanes, view.axes) - start;

@@ -16,7 +16,7 @@ constexpr float own_share = 0.5f;
 void clear_point(PathPoints& p, int l) {
   p.x[l] = p.y[l] = p.z[l] = 0.0f;
   p.dx[l] = p.dy[l] = p.dz[l] = p.nx[l] = p.ny[l] = p.nz[l] = 0.0f;
-  p.range_m[l] = p.cos_sonar[l] = p.density[l] = 1.0f;
+  p.range_m[l] = p.cos_sonar[l] = p.density[l] = p.area_m2[l] = 1.0f;
   p.send[l] = p.mu[l] = p.specular[l] = p.lobe_share[l] = 0.0f;
   p.exponent[l] = 2.0f;
   p.ux[l] = p.uy[l] = p.uz[l] = p.vx[l] = p.vy[l] = p.vz[l] = 0.0f;
@@ -54,6 +54,7 @@ bool set_point(PathPoints& p, int l, const PathView& view, const Eigen::Vector3f
   p.range_m[l] = r;
   p.cos_sonar[l] = cos_sonar;
   p.send[l] = place.gain / cos_sonar;
+  p.area_m2[l] = r * r / cos_sonar;
   p.density[l] = static_cast<float>(PathTiles::points) / (width_rad * height_rad * horizontal);
   p.mu[l] = law.mu, p.specular[l] = law.specular, p.exponent[l] = law.exponent, p.lobe_share[l] = law.lobe_share;
   p.ux[l] = u.x(), p.uy[l] = u.y(), p.uz[l] = u.z();

@@ -19,6 +19,7 @@ struct alignas(32) PathPoints {
   float cos_sonar[packet_lanes];  ///< n . direction to the sonar
   float send[packet_lanes];       ///< one-way pattern / cos_sonar
   float density[packet_lanes];    ///< of the fan's points, 1/sr
+  float area_m2[packet_lanes];    ///< of surface for each sr of the fan
   float mu[packet_lanes], specular[packet_lanes], exponent[packet_lanes], lobe_share[packet_lanes];
   float ux[packet_lanes], uy[packet_lanes], uz[packet_lanes];  ///< extent (m) of a tile's share along azimuth
   float vx[packet_lanes], vy[packet_lanes], vz[packet_lanes];  ///< and along elevation, on the tangent plane

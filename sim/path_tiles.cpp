@@ -80,11 +80,7 @@ PathTiles PathTiles::for_energy(const Grid& grid, const std::vector<float>& ener
     const float wanted = 1.0f + spare * weight[i] / sum;
     while (halvings[i] < most_halvings && static_cast<float>(2 << halvings[i]) < 1.5f * wanted) ++halvings[i];
   }
-  PathTiles tiles(grid, std::move(halvings));
-  for (std::size_t i = 0; i < energy.size(); ++i) {
-    tiles.expected_.push_back(weight[i] * weight[i] / static_cast<float>(1 << tiles.halvings_[i]));
-  }
-  return tiles;
+  return PathTiles(grid, std::move(halvings));
 }
 
 PathTiles::Point PathTiles::point(const Tile& tile, int q) const {

@@ -39,8 +39,6 @@ class PathTiles {
   /// Neighbours mostly follow each other (Morton order of the cells).
   const std::vector<Tile>& tiles() const { return tiles_; }
   Point point(const Tile& tile, int q) const;
-  /// Energy that every tile of a cell is likely to hold, roughly; 0 where none is known.
-  float expected(int cell) const { return expected_.empty() ? 0.0f : expected_[cell]; }
   /// Of the tiles of a cell.
   float width(int cell) const { return 1.0f / static_cast<float>(grid_.columns << (halvings_[cell] / 2)); }
   float height(int cell) const { return 1.0f / static_cast<float>(grid_.rows << ((halvings_[cell] + 1) / 2)); }
@@ -48,7 +46,6 @@ class PathTiles {
  private:
   Grid grid_;
   std::vector<int> halvings_;
-  std::vector<float> expected_;
   std::vector<Tile> tiles_;
 };
 

@@ -160,8 +160,8 @@ void walk(const PathView& view, const PathHits& hits, int walks, int order, bool
 void add_walked_paths(const PathView& view, const PathHits& hits, int order, PathImage& image) {
   walk(view, hits, walks_per_point, order, true,
        [&](const PathPair& path, const PathPoints& start, const PathPoints& ends, int l) {
-         image.add(start.column[l], path.half_length_m, path.extent_m, start.range_m[l], path.energy);
-         image.add(ends.column[l], path.half_length_m, path.extent_m, ends.range_m[l], path.energy);
+         image.add(start.column[l], image.box(path.half_length_m, path.extent_m, start.range_m[l], path.energy));
+         image.add(ends.column[l], image.box(path.half_length_m, path.extent_m, ends.range_m[l], path.energy));
        });
 }
 

@@ -1,16 +1,15 @@
-// The layer as part of a ping: its bits, its noise, and the ghosts of a box in the test tank.
+// The layer as part of a ping: its bits, and the ghosts of a box in the test tank.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstring>
-#include <numeric>
-#include <string>
 
 #include "ensonify/core/error.hpp"
 #include "ensonify/core/parallel.hpp"
 #include "ensonify/sim/ray_packet.hpp"
+#include "support/box_in_tank.hpp"
 #include "support/image_source.hpp"
 #include "support/meshes.hpp"
 #include "support/pings.hpp"
@@ -122,77 +121,6 @@ TEST(Multipath, FlatFloorAloneHasNone) {
   EXPECT_EQ(sum_of(ping.echo.multipath), 0.0);
 }
 
-std::vector<double> blocks_of(const Image2<float>& layer) {
-  std::vector<double> blocks;
-  for (int row = 0; row + 16 <= layer.rows(); row += 16) {
-    for (int column = 0; column + 16 <= layer.columns(); column += 16) {
-      double sum = 0.0;
-      for (int r = 0; r < 16; ++r) {
-        for (int c = 0; c < 16; ++c) sum += static_cast<double>(layer(row + r, column + c));
-      }
-      blocks.push_back(sum);
-    }
-  }
-  return blocks;
-}
-
-struct Errors {
-  double total = 0;         ///< of the whole layer
-  double share_within = 0;  ///< of its energy, that lies in blocks within 10 % of the reference
-  double mean = 0;          ///< of the blocks' errors, weighted with energy
-  double worst = 0;         ///< of the blocks that hold 90 %
-};
-
-/// One ping against 64 times as many pairs, in blocks of 16 bins x 16 beams.
-Errors against_reference(const MultipathTracer& tracer, const Pose& pose, double samples = 1.0) {
-  const std::vector<double> given = blocks_of(tracer.trace(pose, 2, samples));
-  const std::vector<double> wanted = blocks_of(tracer.trace(pose, 2, 64.0));
-  std::vector<std::size_t> order(wanted.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return wanted[a] > wanted[b]; });
-  const double all = std::accumulate(wanted.begin(), wanted.end(), 0.0);
-  Errors errors;
-  errors.total = std::abs(std::accumulate(given.begin(), given.end(), 0.0) / all - 1.0);
-  double held = 0.0;
-  for (const std::size_t i : order) {
-    const double error = std::abs(given[i] - wanted[i]);
-    if (error <= 0.1 * wanted[i]) errors.share_within += wanted[i] / all;
-    if (held < 0.9 * all) errors.worst = std::max(errors.worst, error / wanted[i]);
-    errors.mean += error / all;
-    held += wanted[i];
-  }
-  return errors;
-}
-
-struct NoiseCase {
-  const char* place;
-  std::vector<std::size_t> waypoints;
-  double total, share_within, mean, worst;
-};
-
-// The walls of the tank are smooth: nine tenths of the energy lie in blocks that are all within 10 %. Piles with growth
-// and the rocks of a breakwater scatter between facets smaller than a beam, which a ping samples by a few walks each:
-// there the blocks that hold half or more of the energy are within 10 %.
-TEST(Multipath, NoiseOfBlocksAgainst64TimesThePairs) {
-  for (const NoiseCase& c : {NoiseCase{"test_tank", {3, 5, 9, 11}, 0.02, 0.95, 0.03, 0.10},
-                             NoiseCase{"pier_harbor", {0, 1, 3, 5}, 0.05, 0.65, 0.18, 0.60},
-                             NoiseCase{"breakwater", {0, 1, 2, 3}, 0.05, 0.50, 0.18, 1.50}}) {
-    const Scene scene = load_scene(c.place);
-    const SonarModel sonar = load_sonar("oculus_m1200d_hf");
-    const RayScene rays(scene);
-    const MultipathTracer tracer(rays, sonar, scene.water);
-    for (const std::size_t waypoint : c.waypoints) {
-      SCOPED_TRACE(testing::Message() << c.place << " waypoint " << waypoint);
-      const Errors errors = against_reference(tracer, scene.waypoints.at(waypoint));
-      RecordProperty(std::string(c.place) + "_" + std::to_string(waypoint), std::to_string(errors.share_within));
-      EXPECT_LE(errors.total, c.total);
-      EXPECT_GE(errors.share_within, c.share_within);
-      EXPECT_LE(errors.mean, c.mean);
-      EXPECT_LE(errors.worst, c.worst);
-    }
-  }
-}
-
 TEST(Multipath, RefusesOrdersAndSamplesBeyondItsRule) {
   const Scene scene = scene_of({floor_mesh(-1.0)});
   const RayScene rays(scene);
@@ -203,36 +131,10 @@ TEST(Multipath, RefusesOrdersAndSamplesBeyondItsRule) {
   EXPECT_THROW(tracer.trace(Pose::Identity(), 2, std::nan("")), ConfigError);
 }
 
-// Between rocks, where a ping's walks are few.
-TEST(Multipath, MoreSamplesBringBlocksWithinTenPercent) {
-  const Scene scene = load_scene("breakwater");
-  const RayScene rays(scene);
-  const MultipathTracer tracer(rays, load_sonar("oculus_m1200d_hf"), scene.water);
-  const Errors usual = against_reference(tracer, scene.waypoints.at(2));
-  const Errors more = against_reference(tracer, scene.waypoints.at(2), 16.0);
-  EXPECT_LE(more.mean, 0.5 * usual.mean);
-  EXPECT_GE(more.share_within, 0.85);
-}
-
 // A wooden box between the mirror walls of the test tank, from three poses. The image sources of its visible surface in
 // every wall say where its ghosts are, for both directions of travel. Without the walls a convex box has no multipath.
 TEST(Multipath, GhostsOfABoxInTheTestTank) {
-  Scene tank = load_scene("test_tank");
-  std::erase_if(tank.instances, [](const Instance& i) { return i.name.rfind("wall_", 0) != 0; });
-  ASSERT_EQ(tank.instances.size(), 4u);
-  const auto glass =
-      std::find_if(tank.materials.begin(), tank.materials.end(), [](const Material& m) { return m.name == "glass"; });
-  Material wall{"mirror", -35.0, 14.6, 1100.0, "glass of the bundled table"};
-  if (glass != tank.materials.end()) wall = *glass;
-  tank.materials.push_back(wall);
-  for (Instance& instance : tank.instances) instance.material = static_cast<int>(tank.materials.size()) - 1;
-  tank.materials.push_back({"wood", -20.0, -12.8, 25.0, "bundled table"});
-  tank.meshes.push_back(box_mesh({1.2F, 2.3F, -2.2F}, {1.8F, 2.9F, -1.3F}));
-  Instance box;
-  box.name = "box";
-  box.mesh = static_cast<int>(tank.meshes.size()) - 1;
-  box.material = static_cast<int>(tank.materials.size()) - 1;
-  tank.instances.push_back(box);
+  const Scene tank = box_between_mirrors();
   Scene alone = tank;
   alone.instances.erase(alone.instances.begin(), alone.instances.begin() + 4);
   const RayScene rays(tank);
@@ -251,9 +153,7 @@ TEST(Multipath, GhostsOfABoxInTheTestTank) {
           {{1.2, 2.3 + 0.6 * a, z}, {1.8, 2.3 + 0.6 * a, z}, {1.2 + 0.6 * a, 2.3, z}, {1.2 + 0.6 * a, 2.9, z}});
     }
   }
-  for (const Pose& pose :
-       {pose_from_xyz_rpy({-1.5, 2.2, -1.7}, 0, 0.02, 0.35), pose_from_xyz_rpy({-2.0, 2.4, -1.75}, 0, 0, 0.3),
-        pose_from_xyz_rpy({2.4, -1.0, -1.7}, 0, 0, 1.31)}) {
+  for (const Pose& pose : poses_at_box()) {
     std::vector<Ghost> ghosts;
     for (const Mirror& mirror : walls) {
       for (const Ghost& g : ghosts_of(rays, mirror, surface, sonar.geometry, pose)) {

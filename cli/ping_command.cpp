@@ -7,6 +7,7 @@
 #include "ensonify/cli/arguments.hpp"
 #include "ensonify/cli/commands.hpp"
 #include "ensonify/cli/signals.hpp"
+#include "ensonify/cli/truth_warnings.hpp"
 #include "ensonify/generators/describe.hpp"
 #include "ensonify/generators/json_text.hpp"
 #include "ensonify/generators/simulator.hpp"
@@ -99,6 +100,9 @@ void run(const Arguments& a) {
     write_file(out / "ping.json", json_text(record));
   });
 
+  if (record["nearest_surface_m"].is_null()) {
+    warn_of_silence(scene, T_world_sonar.translation(), sonar.geometry.range_min_m, sonar.geometry.range_max_m);
+  }
   fmt::print("{} x {} pixels in {}: mask {:.1f} %, nearest surface {} m\n", images.raw.grey.rows(),
              images.raw.grey.columns(), a.out, 100.0 * record["mask_share"].get<double>(),
              record["nearest_surface_m"].is_null() ? "none"

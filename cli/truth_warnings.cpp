@@ -99,4 +99,15 @@ void warn_of_void(const Scene& scene, const VoxelTruth& truth) {
   }
 }
 
+void warn_of_silence(const Scene& scene, const Vec3& sonar_m, double range_min_m, double range_max_m) {
+  std::string where = "turn it or move it nearer";
+  if (sonar_m.z() > 0.0 && scene.bounds_m.max().z() <= 0.0) {
+    where = fmt::format("it is {:.4g} m above the water (z is up, 0 at the surface)", sonar_m.z());
+  } else if (!scene.bounds_m.contains(sonar_m)) {
+    where = fmt::format("it is outside of the scene, {}", box(scene.bounds_m));
+  }
+  warn(scene, fmt::format("the sonar at ({:.4g}, {:.4g}, {:.4g}) meets no surface within {:.4g} to {:.4g} m: {}",
+                          sonar_m.x(), sonar_m.y(), sonar_m.z(), range_min_m, range_max_m, where));
+}
+
 }  // namespace ensonify::cli

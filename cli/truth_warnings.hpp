@@ -8,4 +8,7 @@ namespace ensonify::cli {
 /// bounds, no obstacle at all, a navigable box without room.
 void warn_of_void(const Scene& scene, const VoxelTruth& truth);
 
+/// The same of a ping that met no surface between its ranges (m): where the sonar is.
+void warn_of_silence(const Scene& scene, const Vec3& sonar_m, double range_min_m, double range_max_m);
+
 }  // namespace ensonify::cli

@@ -91,6 +91,17 @@ class Void(ProgramTest):
         for name in ("test_tank", "pier_harbor", "boulder_field", "ferry_berth"):  # parts and copies, some out of the water
             self.assertEqual(self.succeed("scene", "check", name).stderr, "")
 
+    def test_of_a_ping_that_meets_nothing(self):
+        for pose, reason in (("0 0 2 0 0 0", "it is 2 m above the water (z is up, 0 at the surface)"),
+                             ("30 0 -1 0 0 0", "it is outside of the scene, (-"),
+                             ("0 0 -1 0 -80 0", "turn it or move it nearer")):
+            done = self.succeed("ping", "test_tank", "--sonar", "holoocean", "--pose", pose, "--range-max", "1",
+                                "--out", "p")
+            self.assertIn("ensonify: warning: test_tank: the sonar at (", done.stderr)
+            self.assertIn(f"meets no surface within 0.1 to 1 m: {reason}", done.stderr)
+        done = self.succeed("ping", "test_tank", "--sonar", "holoocean", "--pose", "1 0 -1.5 0 10 0", "--out", "p")
+        self.assertEqual(done.stderr, "")
+
     def test_what_is_watertight_is_said_to_be(self):
         self.write("cube.obj", CUBE_OBJ)
         self.assertIn("watertight", self.succeed("scene", "check", "cube.obj").stdout)

@@ -96,17 +96,16 @@ PathFan::Place PathFan::place_of(const Eigen::Vector3f& unit) const {
 }
 
 float PathFan::distance_within(const Eigen::Vector3f& place, const Eigen::Vector3f& unit) const {
-  // The double cone z^2 = s^2 p^2 along place + t unit: a t^2 + 2 b t + c = 0 with c < 0 inside.
+  // f(t) = a t^2 + 2 b t + c of the double cone z^2 = s^2 p^2 along p = place + t unit, negative within the fan. A ray
+  // less steep than the cone (a <= 0) may leave over one nappe, but comes back.
   const float s2 = half_sine_ * half_sine_;
   const float a = unit.z() * unit.z() - s2;
   const float b = place.z() * unit.z() - s2 * place.dot(unit);
   const float c = place.z() * place.z() - s2 * place.squaredNorm();
-  const float discriminant = b * b - a * c;
-  constexpr float never = std::numeric_limits<float>::max();
-  if (c >= 0.0f || discriminant < 0.0f) return never;
-  // The smallest positive root, in the form that does not cancel: -c / (b + root) where that is positive.
-  const float below = b + std::sqrt(discriminant);
-  return below > 0.0f ? -c / below : never;
+  if (a <= 0.0f || c >= 0.0f) return std::numeric_limits<float>::max();
+  // The positive root, in the form that does not cancel.
+  const float root = std::sqrt(b * b - a * c);
+  return b > 0.0f ? -c / (b + root) : (root - b) / a;
 }
 
 }  // namespace ensonify

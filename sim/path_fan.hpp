@@ -29,8 +29,8 @@ class PathFan {
   /// Unit vector, sonar frame.
   Eigen::Vector3f direction(float u, float v) const;
   Place place_of(const Eigen::Vector3f& unit) const;
-  /// How far a ray from a place within the fan's elevations stays within them (both in sonar axes, `unit` a unit
-  /// vector). No limit for a place outside: the ray may enter.
+  /// How far along a ray (place and unit vector in sonar axes) the last place within the fan's elevations may lie. No
+  /// limit where the ray may enter or come back.
   float distance_within(const Eigen::Vector3f& place, const Eigen::Vector3f& unit) const;
 
  private:

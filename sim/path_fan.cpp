@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace ensonify {
 namespace {
@@ -39,6 +40,13 @@ PathFan::PathFan(const SonarModel& sonar, const RayFan& fan, int columns) : colu
     while (column + 1 < columns_ && azimuth < edges_rad_[column + 1]) ++column;
     const double within = (edges_rad_[column] - azimuth) / (edges_rad_[column] - edges_rad_[column + 1]);
     u_at_azimuth_.push_back(static_cast<float>((column + std::clamp(within, 0.0, 1.0)) / columns_));
+  }
+
+  const float port = edges_rad_.front();
+  const float starboard = edges_rad_.back();
+  if (port - starboard < std::numbers::pi_v<float>) {
+    borders_ = {Eigen::Vector3f(std::sin(port), -std::cos(port), 0.0f),
+                Eigen::Vector3f(-std::sin(starboard), std::cos(starboard), 0.0f)};
   }
 
   // The rays' arc, which ends where the two-way pattern is 60 dB down.
@@ -96,16 +104,28 @@ PathFan::Place PathFan::place_of(const Eigen::Vector3f& unit) const {
 }
 
 float PathFan::distance_within(const Eigen::Vector3f& place, const Eigen::Vector3f& unit) const {
+  constexpr float never = std::numeric_limits<float>::max();
+  // A wedge of less than half a turn is convex: what leaves it stays outside.
+  float beside = never;
+  for (const Eigen::Vector3f& inward : borders_) {
+    const float depth = inward.dot(place);
+    const float rate = inward.dot(unit);
+    if (depth < 0.0f) return never;
+    if (rate < 0.0f) beside = std::min(beside, depth / -rate);
+  }
   // f(t) = a t^2 + 2 b t + c of the double cone z^2 = s^2 p^2 along p = place + t unit, negative within the fan. A ray
   // less steep than the cone (a <= 0) may leave over one nappe, but comes back.
   const float s2 = half_sine_ * half_sine_;
   const float a = unit.z() * unit.z() - s2;
   const float b = place.z() * unit.z() - s2 * place.dot(unit);
   const float c = place.z() * place.z() - s2 * place.squaredNorm();
-  if (a <= 0.0f || c >= 0.0f) return std::numeric_limits<float>::max();
-  // The positive root, in the form that does not cancel.
-  const float root = std::sqrt(b * b - a * c);
-  return b > 0.0f ? -c / (b + root) : (root - b) / a;
+  const float discriminant = b * b - a * c;
+  if (c >= 0.0f || (a <= 0.0f && (b <= 0.0f || discriminant <= 0.0f))) return beside;
+  // Roots in the form that does not cancel.
+  const float root = std::sqrt(discriminant);
+  const float leaves = b > 0.0f ? -c / (b + root) : (root - b) / a;
+  const bool comes_back = a <= 0.0f && -c / (b - root) < beside;
+  return comes_back ? beside : std::min(beside, leaves);
 }
 
 }  // namespace ensonify

@@ -29,8 +29,8 @@ class PathFan {
   /// Unit vector, sonar frame.
   Eigen::Vector3f direction(float u, float v) const;
   Place place_of(const Eigen::Vector3f& unit) const;
-  /// How far along a ray (place and unit vector in sonar axes) the last place within the fan's elevations may lie. No
-  /// limit where the ray may enter or come back.
+  /// How far along a ray (place and unit vector in sonar axes) the last place within the fan may lie. No limit where
+  /// the ray may enter or come back.
   float distance_within(const Eigen::Vector3f& place, const Eigen::Vector3f& unit) const;
 
  private:
@@ -39,9 +39,10 @@ class PathFan {
   };
 
   int columns_ = 0;
-  std::vector<float> edges_rad_;     ///< of the columns, descending
-  std::vector<float> azimuth_gain_;  ///< of the columns, one way
-  std::vector<float> u_at_azimuth_;  ///< equidistant from edges_rad_.front() down
+  std::vector<float> edges_rad_;          ///< of the columns, descending
+  std::vector<float> azimuth_gain_;       ///< of the columns, one way
+  std::vector<float> u_at_azimuth_;       ///< equidistant from edges_rad_.front() down
+  std::vector<Eigen::Vector3f> borders_;  ///< of the wedge of azimuths, inward; none where it is half a turn or more
   float half_sine_ = 0;
   std::vector<Elevation> elevation_;  ///< equidistant in the sine of elevation
   std::vector<float> sine_at_v_;      ///< equidistant in v

@@ -35,8 +35,8 @@ TEST(MultipathLevel, InsideOfALambertSphere) {
   const double expected = std::pow(rho * omega / (2.0 * std::numbers::pi * radius), 2);
   const double second = sum_of(multipath_of(scene, wide_sonar()));
   EXPECT_NEAR(second / expected, 1.0, 0.01);
-  // One walk in thirty ends in the fan, so of order 3 a default ping finds some 500 paths, and one of 64 times the samples
-  // eight times as many: standard deviations of 3.5 and 1.4 %.
+  // One walk in thirty ends in the fan, so of order 3 a default ping finds some 500 paths, and one of 64 times the
+  // samples eight times as many: standard deviations of 3.5 and 1.4 %.
   const double third = sum_of(multipath_of(scene, wide_sonar(), 3)) - second;
   EXPECT_NEAR(third / (rho * expected), 1.0, 0.12);
   const double many =
@@ -50,8 +50,7 @@ TEST(MultipathLevel, InsideOfALambertSphereAcrossAWideFan) {
   const double rho = std::numbers::pi * test_mu;
   const double omega = 2.0 * std::sin(radians(20.0)) * radians(130.0);
   const Scene scene = scene_of({sphere_mesh(radius, 192, 96)});
-  const SonarModel sonar =
-      bare_sonar({.beams = 200, .azimuth_fov_deg = 130.0, .elevation_fov_deg = 40.0, .bins = 400});
+  const SonarModel sonar = bare_sonar({.beams = 200, .azimuth_fov_deg = 130.0, .elevation_fov_deg = 40.0, .bins = 400});
   const double expected = std::pow(rho * omega / (2.0 * std::numbers::pi * radius), 2);
   EXPECT_NEAR(sum_of(multipath_of(scene, sonar)) / expected, 1.0, 0.01);
 }

@@ -20,7 +20,8 @@ std::string time_text(double seconds) {
 
 }  // namespace
 
-ProgressLine::ProgressLine(ProgressStyle style) : style_(style), terminal_(::isatty(STDERR_FILENO) != 0) {}
+ProgressLine::ProgressLine(ProgressStyle style)
+    : style_(style), terminal_(::isatty(STDERR_FILENO) != 0), start_(Clock::now()), last_(start_) {}
 
 ProgressStyle parse_progress_style(const std::string& word) {
   if (word == "json") return ProgressStyle::json;
@@ -32,26 +33,30 @@ void ProgressLine::show(const std::string& stage, int done, int fresh, int total
   const auto now = Clock::now();
   if (stage != stage_) {
     stage_ = stage;
-    start_ = now;
+    start_ = last_;
     shown_ = Clock::time_point{};
   }
+  last_ = now;
   const bool live = terminal_ && style_ == ProgressStyle::automatic;
   const auto pause = live ? std::chrono::milliseconds(100) : std::chrono::milliseconds(5000);
   if (done < total && now - shown_ < pause) return;
   shown_ = now;
   const double seconds = std::chrono::duration<double>(now - start_).count();
   const double rate = seconds > 0.0 ? fresh / seconds : 0.0;
-  const double left_s = rate > 0.0 ? (total - done) / rate : 0.0;
+  const bool known = rate > 0.0;  // a resumed stage may begin with nothing done in this run
+  const double left_s = known ? (total - done) / rate : 0.0;
+  const std::string pace =
+      known ? fmt::format("  {:.{}f}/s  {} left", rate, rate < 10.0 ? 1 : 0, time_text(left_s)) : "";
   if (style_ == ProgressStyle::json) {
-    fmt::print(std::cerr, "{}\n",
-               nlohmann::json{{"stage", stage}, {"done", done}, {"total", total}, {"rate_hz", rate}, {"eta_s", left_s}}
-                   .dump());
+    nlohmann::json line{{"stage", stage}, {"done", done}, {"total", total}, {"rate_hz", rate}, {"eta_s", left_s}};
+    if (!known && done < total) line["eta_s"] = nullptr;
+    fmt::print(std::cerr, "{}\n", line.dump());
   } else if (live) {
     const int filled = static_cast<int>(static_cast<double>(bar_width) * done / total);
-    fmt::print(std::cerr, "\r{} [{:=<{}}{:<{}}] {}/{}  {:.0f}/s  {} left \033[K{}", stage, "", filled, "",
-               bar_width - filled, done, total, rate, time_text(left_s), done == total ? "\n" : "");
+    fmt::print(std::cerr, "\r{} [{:=<{}}{:<{}}] {}/{}{} \033[K{}", stage, "", filled, "", bar_width - filled, done,
+               total, pace, done == total ? "\n" : "");
   } else {
-    fmt::print(std::cerr, "{} {}/{}  {:.0f}/s  {} left\n", stage, done, total, rate, time_text(left_s));
+    fmt::print(std::cerr, "{} {}/{}{}\n", stage, done, total, pace);
   }
   std::cerr.flush();
 }

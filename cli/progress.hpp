@@ -13,7 +13,8 @@ class ProgressLine {
  public:
   explicit ProgressLine(ProgressStyle style);
 
-  /// `fresh`: done in this run, which the rate counts. A new stage starts the clock anew.
+  /// `fresh`: done in this run, which the rate counts from when the stage before was last shown. Time left is unknown
+  /// (null in JSON) while there is no rate.
   void show(const std::string& stage, int done, int fresh, int total);
 
  private:
@@ -21,7 +22,8 @@ class ProgressLine {
   ProgressStyle style_;
   bool terminal_;
   std::string stage_;
-  Clock::time_point start_;
+  Clock::time_point start_;  ///< of the stage
+  Clock::time_point last_;   ///< call, shown or not
   Clock::time_point shown_;
 };
 

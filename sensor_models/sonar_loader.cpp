@@ -156,6 +156,9 @@ SonarModel load_sonar(const ConfigSource& source, const RangeWindow& window) {
   sonar.title = file.text("title");
   sonar.frequency_hz = file.number("frequency_hz", {1e4, 1e7});
   sonar.bandwidth_hz = file.number("bandwidth_hz", {1e2, 5e6});
+  if (sonar.bandwidth_hz > sonar.frequency_hz) {
+    file.fail("bandwidth_hz", fmt::format("must be at most frequency_hz, {:g}", sonar.frequency_hz));
+  }
   sonar.source_level_db = file.number("source_level_db", {100.0, 260.0});
   sonar.ping_rate_hz = file.number("ping_rate_hz", {0.01, 1000.0});
   sonar.geometry.beam_azimuth_rad = read_beams(file.child("beams"));

@@ -284,6 +284,8 @@ class Output(ProgramTest):
         self.assertEqual(lines[-1]["done"], lines[-1]["total"])
         for line in lines:
             self.assertEqual(set(line), {"stage", "done", "total", "rate_hz", "eta_s"})
+            if line["done"] < line["total"]:
+                self.assertNotEqual(line["eta_s"], 0, "unknown is null")
 
     def test_pairs_sets_the_training_frames(self):
         out = self.generate("out", "--pairs", 7)

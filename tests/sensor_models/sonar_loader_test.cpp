@@ -139,6 +139,8 @@ TEST_F(BadSonar, IsRefusedWithItsRule) {
   EXPECT_EQ(refusal("gamma: 0.5", "gamma: 0.5"), "");
   EXPECT_THAT(refusal("frequency_hz: 2.1e6", "frequency_hz: 2.1"), HasSubstr("frequency_hz: must lie in"));
   EXPECT_THAT(refusal("bandwidth_hz", "bandwith_hz"), HasSubstr("did you mean 'bandwidth_hz'"));
+  EXPECT_THAT(refusal("frequency_hz: 2.1e6", "frequency_hz: 2.1e5"),
+              HasSubstr("bandwidth_hz: must be at most frequency_hz, 210000"));
   EXPECT_THAT(refusal("count: 512", "count: 0"), HasSubstr("beams.count"));
   EXPECT_THAT(refusal("count: 512", "count: 1e6"), HasSubstr("beams.count"));
   EXPECT_THAT(refusal("azimuth_fov_deg: 60", "azimuth_fov_deg: 180"), HasSubstr("azimuth_fov_deg"));

@@ -97,7 +97,8 @@ void add_generate(CLI::App& app) {
   auto a = std::make_shared<Arguments>();
   command
       ->add_option("RECIPE", a->recipe,
-                   fmt::format("Recipe YAML, or a bundled name: {}", fmt::join(library_names("generators"), ", ")))
+                   fmt::format("Recipe YAML, a set's dataset.json, or a bundled name: {}",
+                               fmt::join(library_names("generators"), ", ")))
       ->required();
   command->add_option("--out", a->out, "Folder of the dataset")->required()->check(some_path());
   command->add_option("--pairs", a->pairs, "Training pairs instead of the recipe's")->check(CLI::Range(1, 100'000'000));

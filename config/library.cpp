@@ -92,4 +92,17 @@ Reader open_config(const std::string& kind, const ConfigSource& source) {
   return Reader::from_file(resolve_name(kind, std::get<std::string>(source)));
 }
 
+std::string resolve_beside(const Reader& reader, std::string_view key, const std::string& kind,
+                           const std::string& word) {
+  std::error_code no_throw;
+  const fs::path path = reader.folder() / word;
+  if (fs::is_regular_file(path, no_throw)) return path.string();
+  try {
+    resolve_name(kind, word);
+  } catch (const ConfigError& e) {
+    reader.fail(key, e.what());
+  }
+  return word;
+}
+
 }  // namespace ensonify

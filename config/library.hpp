@@ -33,4 +33,9 @@ using ConfigSource = std::variant<std::string, ConfigText>;
 /// Throws ConfigError as resolve_name() and Reader do.
 Reader open_config(const std::string& kind, const ConfigSource& source);
 
+/// What a configuration means by `word` under `key`: a file beside it where there is one, else the word as it is, a
+/// path or a bundled name. Throws ConfigError at the key where it is neither.
+std::string resolve_beside(const Reader& reader, std::string_view key, const std::string& kind,
+                           const std::string& word);
+
 }  // namespace ensonify

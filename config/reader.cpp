@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <yaml-cpp/depthguard.h>
 
 #include <algorithm>
 #include <cmath>
@@ -118,6 +119,12 @@ Reader Reader::from_file(const std::filesystem::path& path) {
   return reader;
 }
 
+Reader Reader::in_working_folder() const {
+  Reader reader = *this;
+  reader.source_ = std::make_shared<const Source>(Source{source_->name, {}});
+  return reader;
+}
+
 Reader Reader::from_text(const std::string& yaml, const std::string& name) {
   auto source = std::make_shared<const Source>(Source{name, {}});
   try {
@@ -127,6 +134,8 @@ Reader Reader::from_text(const std::string& yaml, const std::string& name) {
       throw ConfigError(fmt::format("{}: holds {} YAML documents; it must be one", name, documents.size()));
     }
     return {documents[0], std::move(source), ""};
+  } catch (const YAML::DeepRecursion&) {
+    throw ConfigError(fmt::format("{}: nested 500 deep or more, no configuration", name));
   } catch (const YAML::Exception& e) {
     throw ConfigError(fmt::format("{}:{}: no valid YAML: {}", name, e.mark.line + 1, e.msg));
   }

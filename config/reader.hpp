@@ -55,6 +55,8 @@ class Reader {
   Reader child(std::string_view key);
   /// A sequence of mappings under `key`; empty where the key is absent.
   std::vector<Reader> children(std::string_view key);
+  /// The same, where relative paths start from the working folder.
+  Reader in_working_folder() const;
   /// The keys of this mapping in file order, for mappings whose keys are names.
   std::vector<std::string> keys() const;
   /// The raw node under `key`, for values that are more than one kind.

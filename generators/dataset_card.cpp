@@ -97,6 +97,8 @@ The same tool version, recipe, seed and `--isa {isa}` give the same pixels on an
 {command}
 ```
 
+Where the recipe itself is not at hand, `dataset.json` stands for it: it holds every value.
+
 Content hash (SHA-256 over decoded pixels, metadata and grids): `{hash}`
 )",
           // JSON's quoting is YAML's too.

@@ -1,6 +1,7 @@
 #include "ensonify/generators/describe.hpp"
 
 #include <array>
+#include <cmath>
 #include <nlohmann/json.hpp>
 
 namespace ensonify {
@@ -20,6 +21,9 @@ json describe(const Distribution& distribution) {
 
 namespace {
 
+/// In degrees; what was given in whole parts of them reads so, and is read back to the same bits.
+double rounded_deg(double angle_rad) { return std::round(degrees(angle_rad) * 1e9) / 1e9; }
+
 /// The path under the key that the recipe has for it.
 json describe_path(const PathSpec& path) {
   struct {
@@ -29,7 +33,7 @@ json describe_path(const PathSpec& path) {
       for (const Pose& pose : own.T_world_sonar) {
         const Vec3 p = pose.translation();
         const auto [roll, pitch, yaw] = roll_pitch_yaw(pose);
-        list.push_back({p.x(), p.y(), p.z(), degrees(roll), degrees(pitch), degrees(yaw)});
+        list.push_back({p.x(), p.y(), p.z(), rounded_deg(roll), rounded_deg(pitch), rounded_deg(yaw)});
       }
       return {{"waypoints", list}};
     }

@@ -10,6 +10,10 @@ namespace ensonify {
 
 /// Resolved settings as JSON, for manifests; keys as in the YAML files.
 nlohmann::json describe(const Distribution& distribution);
+/// Of a dataset's manifest.
+inline constexpr const char* dataset_schema = "ensonify-dataset";
+
+/// What load_recipe() reads, too.
 nlohmann::json describe(const Recipe& recipe);
 nlohmann::json describe(const SonarModel& sonar);
 nlohmann::json describe(const NoiseProfile& noise);

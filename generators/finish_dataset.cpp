@@ -201,7 +201,7 @@ bool finish_dataset(const FrameMaker& maker, const DatasetPaths& paths, const st
   }
   write_trajectories(maker, paths, frames, files);
 
-  json manifest{{"schema", "ensonify-dataset"},
+  json manifest{{"schema", dataset_schema},
                 {"schema_version", 1},
                 {"tool", {{"name", "ensonify"}, {"version", ENSONIFY_VERSION}}},
                 {"command_line", options.command_line},

@@ -2,18 +2,16 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-#include <map>
 #include <numeric>
 #include <optional>
-#include <set>
-#include <string_view>
 
 #include "ensonify/config/library.hpp"
 #include "ensonify/config/reader.hpp"
 #include "ensonify/core/error.hpp"
+#include "ensonify/generators/describe.hpp"
 #include "ensonify/generators/drift.hpp"
 #include "ensonify/generators/read_trajectory.hpp"
+#include "ensonify/generators/recipe_places.hpp"
 #include "ensonify/generators/recipe_window.hpp"
 
 namespace ensonify {
@@ -21,68 +19,6 @@ namespace {
 
 constexpr int max_frames = 100'000'000;
 constexpr Limits angle_limits{-360.0, 360.0};
-
-/// A file beside the recipe where there is one, else the word as it is: a path or a bundled name of that kind.
-std::string named(const Reader& reader, std::string_view key, const std::string& kind, const std::string& word) {
-  std::error_code no_throw;
-  const std::filesystem::path path = reader.folder() / word;
-  if (std::filesystem::is_regular_file(path, no_throw)) return path.string();
-  try {
-    resolve_name(kind, word);
-  } catch (const ConfigError& e) {
-    reader.fail(key, e.what());
-  }
-  return word;
-}
-
-/// A mesh has no water, no bounds and no navigable box.
-void refuse_mesh(const Reader& entry, const std::string& scene) {
-  const std::string extension = std::filesystem::path(scene).extension().string();
-  if (extension.empty() || extension == ".yaml" || extension == ".yml") return;
-  entry.fail("scene", fmt::format("{} is no scene YAML; write one whose objects name the mesh, such as "
-                                  "{{name: thing, mesh: {}, material: steel}}",
-                                  scene, std::filesystem::path(scene).filename().string()));
-}
-
-/// The stem of a scene's file, which names files of the dataset.
-std::string place_name(const Reader& entry, const std::string& scene) {
-  constexpr std::size_t longest = 100;
-  const std::string stem = std::filesystem::path(scene).stem().string();
-  const bool harmless = std::none_of(stem.begin(), stem.end(), [](unsigned char c) {
-    return c <= ' ' || c == 127 ||
-           std::string_view("\\\"'*?:<>|/").find(static_cast<char>(c)) != std::string_view::npos;
-  });
-  if (stem.empty() || stem.size() > longest || stem[0] == '.' || stem[0] == '-' || !harmless) {
-    entry.fail("scene", fmt::format("the file name, without extension, names files of the dataset: it must be 1 to {} "
-                                    "bytes without blanks, control characters or any of \\ \" ' * ? : < > |, and not "
-                                    "begin with . or -",
-                                    longest));
-  }
-  return stem;
-}
-
-std::vector<PlaceRef> read_places(Reader& split) {
-  std::vector<PlaceRef> places;
-  for (Reader& entry : split.children("places")) {
-    const std::string scene = named(entry, "scene", "scenes", entry.text("scene"));
-    refuse_mesh(entry, scene);
-    const std::string stem = place_name(entry, scene);
-    const std::vector<double> layouts =
-        entry.has("layouts") ? entry.numbers("layouts", -1, {0.0, 1e9}) : std::vector<double>{0.0};
-    if (layouts.empty()) entry.fail("layouts", "needs at least one layout number");
-    for (const double layout : layouts) {
-      if (layout != static_cast<double>(static_cast<std::uint64_t>(layout))) {
-        entry.fail("layouts", "must be a list of whole numbers");
-      }
-      const auto number = static_cast<std::uint64_t>(layout);
-      const bool alone = layouts.size() == 1;
-      places.push_back({alone ? stem : fmt::format("{}_layout{}", stem, number), scene, number});
-    }
-    entry.finish();
-  }
-  if (places.empty()) split.fail("places", "needs at least one scene");
-  return places;
-}
 
 RandomPoses read_random_poses(Reader poses) {
   RandomPoses random;
@@ -99,9 +35,10 @@ RandomPoses read_random_poses(Reader poses) {
 std::vector<std::string> read_noise(Reader& file) {
   std::vector<std::string> profiles;
   if (file.has("noise") && file.node("noise").IsSequence()) {
-    for (const std::string& word : file.texts("noise")) profiles.push_back(named(file, "noise", "noise", word));
+    for (const std::string& word : file.texts("noise"))
+      profiles.push_back(resolve_beside(file, "noise", "noise", word));
   } else {
-    profiles.push_back(named(file, "noise", "noise", file.text("noise")));
+    profiles.push_back(resolve_beside(file, "noise", "noise", file.text("noise")));
   }
   if (profiles.empty()) file.fail("noise", "needs at least one profile; none is a profile too");
   return profiles;
@@ -156,36 +93,12 @@ Split read_split(const std::string& name, Reader split) {
   return result;
 }
 
-/// A scene that splits use with one layout each would give its places one name.
-void tell_apart(std::vector<Split>& all) {
-  std::map<std::string, int> count;
-  for (const Split& split : all) {
-    for (const PlaceRef& place : split.places) ++count[place.name];
-  }
-  for (Split& split : all) {
-    for (PlaceRef& place : split.places) {
-      if (count[place.name] > 1) place.name = fmt::format("{}_layout{}", place.name, place.layout);
-    }
-  }
-}
-
-void refuse_shared_places(const Reader& splits, const std::vector<Split>& all) {
-  std::set<std::pair<std::string, std::uint64_t>> seen;
-  std::map<std::string, std::string> scene_of_name;
-  for (const Split& split : all) {
-    for (const PlaceRef& place : split.places) {
-      if (!seen.emplace(place.scene, place.layout).second) {
-        splits.fail(split.name, fmt::format("place {} layout {} is used twice; splits must not share a layout",
-                                            place.scene, place.layout));
-      }
-      const auto [other, fresh] = scene_of_name.emplace(place.name, place.scene);
-      if (!fresh) {
-        splits.fail(split.name, fmt::format("{} and {} would both be the place {}, which names files of the dataset; "
-                                            "rename one of the two",
-                                            other->second, place.scene, place.name));
-      }
-    }
-  }
+/// A set's manifest holds its recipe, whose paths start from the working folder that the set was made from.
+Reader open_recipe(const ConfigSource& source) {
+  Reader file = open_config("generators", source);
+  if (!file.has("schema")) return file;
+  file.choice("schema", {dataset_schema});
+  return file.in_working_folder().child("recipe");
 }
 
 }  // namespace
@@ -195,13 +108,13 @@ int Recipe::frames() const {
 }
 
 Recipe load_recipe(const ConfigSource& source) {
-  Reader file = open_config("generators", source);
+  Reader file = open_recipe(source);
   Recipe recipe;
   recipe.name = file.text("name");
   recipe.title = file.text_or("title", recipe.name);
   recipe.seed = static_cast<std::uint64_t>(file.number_or("seed", 0, {0.0, 9e15}));
   Reader sonar = file.child("sonar");
-  recipe.sonar = named(sonar, "model", "sensor_models", sonar.text("model"));
+  recipe.sonar = resolve_beside(sonar, "model", "sensor_models", sonar.text("model"));
   if (sonar.has("range_min_m")) recipe.range_min_m = sonar.number("range_min_m", positive);
   if (sonar.has("range_max_m")) recipe.range_max_m = read_distribution(sonar, "range_max_m", positive);
   if (sonar.has("range_bins")) {
@@ -219,8 +132,8 @@ Recipe load_recipe(const ConfigSource& source) {
   recipe.cell_truth = file.boolean_or("truth", false);
   if (file.has("drift")) {
     Reader drift = file.child("drift");
-    recipe.drift.radial_error_m = drift.number("radial_error_m", {0.0, 1e4});
-    recipe.drift.after_s = drift.number("after_s", {1.0, 1e5});
+    recipe.drift.radial_error_m = drift.number_or("radial_error_m", recipe.drift.radial_error_m, {0.0, 1e4});
+    recipe.drift.after_s = drift.number_or("after_s", recipe.drift.after_s, {1.0, 1e5});
     drift.finish();
   }
   Reader splits = file.child("splits");

@@ -13,7 +13,7 @@ namespace ensonify {
 
 /// A scene in one of its layouts: the unit of splits.
 struct PlaceRef {
-  std::string name;   ///< file name of its truth: the scene, or scene_layout<N> where the recipe uses several
+  std::string name;   ///< of its files: as given, else the scene's; with _layout<N> where the recipe uses several
   std::string scene;  ///< path or bundled name
   std::uint64_t layout = 0;
 };
@@ -61,7 +61,8 @@ struct Recipe {
   int frames() const;
 };
 
-/// Loads a recipe. Scene, sonar and noise files are relative to the recipe, or bundled names.
+/// Loads a recipe: its YAML, or the manifest of a set that was made of it. Scene, sonar and noise files are relative to
+/// the recipe (for a manifest, to the working folder), or bundled names.
 /// Throws ConfigError, also where two splits share a place; DataError where a trajectory file is broken.
 Recipe load_recipe(const ConfigSource& source);
 

@@ -1,11 +1,14 @@
 #include "ensonify/generators/recipe.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "ensonify/core/error.hpp"
+#include "ensonify/generators/describe.hpp"
 #include "ensonify/generators/frame.hpp"
 #include "support/small_places.hpp"
 
@@ -80,6 +83,12 @@ TEST_F(Recipes, NamesThatAreNoneAreNamedWithTheirLine) {
                                                   HasSubstr("no scene YAML"), HasSubstr("mesh: cube.obj")));
 }
 
+TEST_F(Recipes, DriftHasItsDefaults) {
+  const Recipe r = recipe(head + "drift: {radial_error_m: 2}\nsplits:\n" + random_split);
+  EXPECT_EQ(r.drift.radial_error_m, 2.0);
+  EXPECT_EQ(r.drift.after_s, 1200.0);
+}
+
 TEST_F(Recipes, KeysThatExcludeEachOther) {
   const std::string both = "  val:\n    frames: 2\n    places: [{scene: a.yaml}]\n    random_poses: {}\n";
   EXPECT_EQ(refusal(head + "splits:\n" + both), "");
@@ -96,6 +105,11 @@ TEST_F(Recipes, ScenesOfOneFileNameAreNoSharedPlace) {
                                    "  val:\n    frames: 2\n    places: [{scene: deep/a.yaml}]\n    random_poses: {}\n");
   EXPECT_THAT(said, AllOf(HasSubstr("deep/a.yaml would both be the place"), HasSubstr("rename one")));
   EXPECT_THAT(said, testing::Not(HasSubstr("used twice")));
+  const Recipe told_apart = recipe(
+      head + "splits:\n" + random_split +
+      "  val:\n    frames: 2\n    places: [{scene: deep/a.yaml, name: deep_a, layout: 3}]\n    random_poses: {}\n");
+  EXPECT_EQ(told_apart.splits[1].places[0].name, "deep_a");
+  EXPECT_EQ(told_apart.splits[1].places[0].layout, 3u);
 }
 
 TEST_F(Recipes, TrajectoryRefusals) {
@@ -181,6 +195,44 @@ TEST_F(Recipes, FramesPerPlaceDoNotOverflow) {
   EXPECT_NE(refusal(head + "splits:\n  val:\n    frames_per_place: 100000000\n    places: [{scene: a.yaml, layouts: " +
                     layouts + "}]\n    random_poses: {}\n"),
             "");
+}
+
+std::string manifest_of(const Recipe& recipe) {
+  return nlohmann::json{{"schema", dataset_schema}, {"recipe", describe(recipe)}}.dump(1);
+}
+
+// 200 headings: some degrees become others by an ulp when they are made radians and degrees again; of those that were
+// given with up to nine digits none does.
+TEST_F(Recipes, AManifestStandsForItsRecipe) {
+  std::string waypoints;
+  for (int i = 0; i < 200; ++i) waypoints += fmt::format("[{}, 0.1, -2, 0.3, 10.7, {:.1f}], ", 0.01 * i, 0.9 * i - 90);
+  write("way.tum", "0 1 1 -2 0 0 0 1\n9 2 1 -2 0 0 0 1\n");
+  const Recipe first =
+      recipe(head + "splits:\n" + random_split + "  val:\n    frames: 2\n    places: [{scene: way.yaml}]\n" +
+             "    trajectory: {waypoints: [" + waypoints + "], attitude_noise: {roll_deg: 2}}\n" +
+             "  test:\n    frames: 2\n    places: [{scene: into.yaml, layouts: [4, 5]}]\n" +
+             "    trajectory: {file: way.tum, rate_hz: 1}\n");
+  const fs::path elsewhere = folder / "set";
+  fs::create_directories(elsewhere);
+  write("set/dataset.json", manifest_of(first));
+  const Recipe again = load_recipe((elsewhere / "dataset.json").string());
+  EXPECT_EQ(describe(again), describe(first));
+  const auto poses = [](const Recipe& r) {
+    return std::get<OwnWaypoints>(std::get<TrajectoryPoses>(r.splits[1].poses).path).T_world_sonar;
+  };
+  for (std::size_t i = 0; i < 200; ++i) EXPECT_EQ(poses(again)[i].matrix(), poses(first)[i].matrix()) << i;
+}
+
+TEST(Recipe, ManifestsOfBundledOnesStandForThem) {
+  for (const std::string& name : library_names("generators")) {
+    const Recipe first = load_recipe(name);
+    EXPECT_EQ(describe(load_recipe(ConfigText{manifest_of(first), "manifest"})), describe(first)) << name;
+  }
+}
+
+TEST_F(Recipes, OtherFilesWithASchemaAreNone) {
+  EXPECT_THAT(refusal("{\"schema\": \"ensonify-stats\", \"recipe\": {}}"),
+              AllOf(HasSubstr("recipe.yaml:1: schema"), HasSubstr("ensonify-dataset")));
 }
 
 TEST(Recipe, BundledLoad) {

@@ -16,7 +16,9 @@ Pose pose_from_xyz_rpy(const Vec3& position_m, double roll, double pitch, double
 
 std::array<double, 3> roll_pitch_yaw(const Pose& pose) {
   const Eigen::Matrix3d r = pose.rotation();
-  return {std::atan2(r(2, 1), r(2, 2)), std::asin(std::clamp(-r(2, 0), -1.0, 1.0)), std::atan2(r(1, 0), r(0, 0))};
+  const double pitch = std::asin(std::clamp(-r(2, 0), -1.0, 1.0));
+  if (std::hypot(r(2, 1), r(2, 2)) < 1e-6) return {0.0, pitch, std::atan2(-r(0, 1), r(1, 1))};
+  return {std::atan2(r(2, 1), r(2, 2)), pitch, std::atan2(r(1, 0), r(0, 0))};
 }
 
 }  // namespace ensonify

@@ -18,7 +18,8 @@ constexpr double degrees(double radians) { return radians * 180.0 / std::numbers
 /// Pose from position (m) and angles (rad), R = Rz(yaw) Ry(pitch) Rx(roll); positive pitch is nose down.
 Pose pose_from_xyz_rpy(const Vec3& position_m, double roll, double pitch, double yaw);
 
-/// Roll, pitch, yaw (rad) of the rotation, pitch in [-pi/2, pi/2].
+/// Roll, pitch, yaw (rad) of the rotation, pitch in [-pi/2, pi/2]. Within 1e-6 rad of straight down or up, where roll
+/// and yaw turn about one axis, roll is 0.
 std::array<double, 3> roll_pitch_yaw(const Pose& pose);
 
 }  // namespace ensonify

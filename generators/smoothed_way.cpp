@@ -59,12 +59,7 @@ double way_through_m(const std::vector<PoseVector>& knots) {
 Pose pose_of(const PoseVector& v) { return pose_from_xyz_rpy(v.head<3>(), v[3], v[4], v[5]); }
 
 PoseVector vector_of(const Pose& pose) {
-  const Eigen::Matrix3d r = pose.rotation();
-  auto [roll, pitch, yaw] = roll_pitch_yaw(pose);
-  if (std::hypot(r(2, 1), r(2, 2)) < 1e-6) {
-    roll = 0.0;
-    yaw = std::atan2(-r(0, 1), r(1, 1));
-  }
+  const auto [roll, pitch, yaw] = roll_pitch_yaw(pose);
   PoseVector vector;
   vector << pose.translation(), roll, pitch, yaw;
   return vector;

@@ -55,6 +55,21 @@ TEST(PoseConvention, AnglesRoundTrip) {
   }));
 }
 
+// Roll and yaw turn about one axis there: the rotation comes back, not its angles.
+TEST(PoseConvention, RotationsComeBackStraightDownAndUp) {
+  EXPECT_TRUE(rc::check([] {
+    const double off = *rc::gen::element(0.0, 1e-16, 1e-9, 1e-7, 2e-6, 1e-4);
+    const double pitch = *rc::gen::element(-1.0, 1.0) * (std::numbers::pi / 2 - off);
+    const Pose pose = pose_from_xyz_rpy({1, 2, 3}, within(-3.1, 3.1), pitch, within(-3.1, 3.1));
+    const auto [roll, back, yaw] = roll_pitch_yaw(pose);
+    RC_ASSERT((pose_from_xyz_rpy({1, 2, 3}, roll, back, yaw).matrix() - pose.matrix()).cwiseAbs().maxCoeff() < 2e-6);
+  }));
+  const auto angles = roll_pitch_yaw(pose_from_xyz_rpy(Vec3::Zero(), 0, radians(90), radians(30)));
+  EXPECT_EQ(angles[0], 0.0);
+  EXPECT_NEAR(degrees(angles[1]), 90, 1e-6);
+  EXPECT_NEAR(degrees(angles[2]), 30, 1e-9);
+}
+
 SonarGeometry geometry() {
   SonarGeometry g;
   g.range_min_m = 0.5;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <vector>
 
 #include "ensonify/core/occupancy_grid.hpp"
@@ -12,6 +14,10 @@ struct LogOddsMap {
   GridFrame frame;
   std::vector<float> log_odds;
 };
+
+inline bool is_finite(const LogOddsMap& map) {
+  return std::ranges::all_of(map.log_odds, [](float v) { return std::isfinite(v); });
+}
 
 /// For writers of grids: positive is `surface`, all else `free`; observable where the value is not 0, so that unknown
 /// cells are those that nothing observed.

@@ -12,6 +12,8 @@ import numpy
 
 import ensonify
 
+if len(sys.argv) < 2:
+    sys.exit(__doc__)
 mesh = sys.argv[1]
 out = pathlib.Path(sys.argv[2] if len(sys.argv) > 2 else "out/own_mesh")
 scene = ensonify.Scene(mesh)

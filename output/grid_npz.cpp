@@ -136,9 +136,7 @@ LogOddsMap read_map_npz(const std::filesystem::path& path) {
   expect_descr(cells, "<f4", path.string() + ": log_odds");
   LogOddsMap map{frame_of(arrays, "log_odds", path.string()), std::vector<float>(cells.bytes.size() / sizeof(float))};
   std::memcpy(map.log_odds.data(), cells.bytes.data(), cells.bytes.size());
-  for (const float v : map.log_odds) {
-    if (std::isnan(v)) throw DataError(path.string() + ": log_odds holds NaN; unknown cells hold 0");
-  }
+  if (!is_finite(map)) throw DataError(path.string() + ": log_odds holds NaN or infinity; unknown cells hold 0");
   return map;
 }
 

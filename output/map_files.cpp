@@ -51,6 +51,7 @@ void write_map(const LogOddsMap& map, const std::filesystem::path& path, std::op
     throw ConfigError(
         fmt::format("map with {} values for {} cells; it needs one a cell", map.log_odds.size(), map.frame.cells()));
   }
+  if (!is_finite(map)) throw DataError(path.string() + ": the map holds NaN or infinity; unknown cells hold 0");
   format_of(path).write(map, path, slice_z_m);
 }
 

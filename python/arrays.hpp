@@ -41,6 +41,7 @@ py::array_t<T> require_array(const py::handle& object, const char* what, int dim
 template <typename T>
 Image2<T> image_from(const py::array_t<T>& array) {
   constexpr py::ssize_t most = 1 << 28;
+  if (array.size() == 0) throw py::value_error("an image needs pixels");
   if (array.size() > most) throw py::value_error(fmt::format("an image of {} pixels is too large", array.size()));
   Image2<T> image(static_cast<int>(array.shape(0)), static_cast<int>(array.shape(1)));
   std::copy_n(array.data(), array.size(), image.pixels().begin());

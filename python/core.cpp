@@ -10,6 +10,7 @@
 #include "ensonify/python/arrays.hpp"
 #include "ensonify/python/poses.hpp"
 #include "ensonify/python/sources.hpp"
+#include "ensonify/python/unlocked.hpp"
 
 namespace ensonify::python {
 
@@ -33,8 +34,9 @@ GreyImage grey_from(const py::handle& object, const char* what) {
 
 Pose pose_from(const py::handle& object, const char* what) {
   using Matrix = py::array_t<double, py::array::c_style | py::array::forcecast>;
-  const Matrix matrix = object.is_none() ? Matrix() : Matrix::ensure(object);
-  if (!matrix || object.is_none()) {
+  const bool complex = py::isinstance<py::array>(object) && object.attr("dtype").attr("kind").cast<char>() == 'c';
+  const Matrix matrix = object.is_none() || complex ? Matrix() : Matrix::ensure(object);
+  if (!matrix || object.is_none() || complex) {
     PyErr_Clear();
     throw py::type_error(
         fmt::format("{} must be a 4 x 4 matrix (ensonify.pose makes one), not {}", what, type_name(object)));
@@ -74,11 +76,31 @@ Vec3 vec3_from(const py::handle& object, const char* what) {
   return {row.at(0), row.at(1), row.at(2)};
 }
 
+namespace {
+
+/// numpy's scalars and arrays become what they hold.
+std::string json_of(const py::handle& object, const std::string& what) {
+  const py::cpp_function plain([what](const py::object& value) -> py::object {
+    if (!py::hasattr(value, "tolist")) {
+      throw py::type_error(fmt::format("{} holds a {}, which YAML has no word for", what, type_name(value)));
+    }
+    return value.attr("tolist")();
+  });
+  const py::object dumps = py::module_::import("json").attr("dumps");
+  try {
+    return dumps(object, py::arg("allow_nan") = false, py::arg("default") = plain).cast<std::string>();
+  } catch (py::error_already_set& e) {
+    if (!e.matches(PyExc_ValueError)) throw;
+    throw ConfigError(fmt::format("{}: must hold finite numbers, and not itself", what));
+  }
+}
+
+}  // namespace
+
 ConfigSource source_from(const py::handle& object, const std::string& what) {
   if (py::isinstance<py::str>(object)) return object.cast<std::string>();
   if (py::isinstance<py::dict>(object)) {
-    const py::object text = py::module_::import("json").attr("dumps")(object, py::arg("allow_nan") = false);
-    return ConfigText{text.cast<std::string>(), what};
+    return ConfigText{json_of(object, what), what};
   }
   if (py::hasattr(object, "__fspath__")) return py::str(object.attr("__fspath__")()).cast<std::string>();
   throw py::type_error(
@@ -102,7 +124,7 @@ void set_threads(int count) {
 
 /// Ends the pool's threads where nothing uses them; the next parallel loop starts them again.
 void end_threads() {
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   tbb::task_scheduler_handle handle{tbb::attach{}};
   tbb::finalize(handle, std::nothrow);
 }
@@ -140,6 +162,7 @@ void bind_core(py::module_& m) {
       },
       py::arg("pose"), "Roll, pitch and yaw of a pose in degrees, pitch within +-90.");
   m.def("_end_threads", &end_threads);
+  py::module_::import("atexit").attr("register")(py::cpp_function(&end_unlocked));
   m.def("_config_path", [](const std::string& kind, const std::string& name) { return resolve_name(kind, name); });
   m.attr("__version__") = ENSONIFY_VERSION;
   m.def("set_threads", &set_threads, py::arg("count"),

@@ -8,6 +8,7 @@
 #include "ensonify/output/grid_files.hpp"
 #include "ensonify/python/arrays.hpp"
 #include "ensonify/python/sources.hpp"
+#include "ensonify/python/unlocked.hpp"
 
 namespace ensonify::python {
 namespace {
@@ -25,7 +26,7 @@ class PyDataset {
     const int at = checked(split, number);
     FramePixels pixels;
     {
-      const py::gil_scoped_release unlocked;
+      const Unlocked unlocked;
       pixels = read_pixels(dataset_, at, number, which);
     }
     return dict_of(std::move(pixels), which);
@@ -42,7 +43,7 @@ class PyDataset {
     const int at = checked(split, number);
     std::vector<Channel> channels;
     {
-      const py::gil_scoped_release unlocked;
+      const Unlocked unlocked;
       channels = read_truth(dataset_, at, number);
     }
     py::dict result;
@@ -52,7 +53,7 @@ class PyDataset {
 
   std::unique_ptr<OccupancyGrid> grid(const std::string& place) {
     const auto path = dataset_.folder / "grids" / (place + ".npz");
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return std::make_unique<OccupancyGrid>(read_grid(path));
   }
 

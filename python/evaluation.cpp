@@ -1,9 +1,13 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+
 #include "ensonify/evaluation/image_scores.hpp"
 #include "ensonify/evaluation/map_scores.hpp"
 #include "ensonify/evaluation/mask_scores.hpp"
 #include "ensonify/python/arrays.hpp"
+#include "ensonify/python/unlocked.hpp"
 
 namespace ensonify::python {
 namespace {
@@ -19,6 +23,11 @@ py::dict score_image(const py::object& image, const py::object& clean) {
   const Image2<float> a = grey_from(image, "image").grey;
   const Image2<float> b = grey_from(clean, "clean").grey;
   require_same_size(a, b);
+  for (const auto* levels : {&a, &b}) {
+    if (!std::ranges::all_of(levels->pixels(), [](float v) { return std::isfinite(v); })) {
+      throw py::value_error("image and clean must be finite");
+    }
+  }
   py::dict scores;
   scores["psnr_db"] = psnr_db(a, b);
   scores["ssim"] = ssim(a, b);
@@ -63,7 +72,7 @@ py::dict score_mask(const py::object& mask, const py::object& truth) {
 py::dict score_map(const LogOddsMap& map, const OccupancyGrid& truth, int tolerance_cells) {
   MapCounts c;
   {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     c = count_map(map, map_truth(truth, {tolerance_cells}));
   }
   py::dict scores;

@@ -7,6 +7,7 @@
 #include "ensonify/filters/filter_registry.hpp"
 #include "ensonify/python/arrays.hpp"
 #include "ensonify/python/sources.hpp"
+#include "ensonify/python/unlocked.hpp"
 
 namespace ensonify::python {
 namespace {
@@ -40,7 +41,7 @@ py::array apply_to(const FilterChain& chain, const py::object& image) {
   const GreyImage raw = grey_from(image, "image");
   GreyImage result;
   {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     result = apply(chain, raw);
   }
   return moved_to_array(std::move(result.grey));

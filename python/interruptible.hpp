@@ -6,6 +6,7 @@
 #include <future>
 
 #include "ensonify/python/bindings.hpp"
+#include "ensonify/python/unlocked.hpp"
 
 namespace ensonify::python {
 
@@ -14,17 +15,16 @@ namespace ensonify::python {
 /// called now and then with the lock.
 template <typename Work, typename Meanwhile>
 auto interruptible(const Work& work, const Meanwhile& meanwhile) {
+  const Unlocked unlocked;
   std::atomic<bool> stopped = false;
   auto result = std::async(std::launch::async, [&] { return work(stopped); });
   std::exception_ptr raised;
   constexpr std::chrono::milliseconds patience{50};
   for (bool done = false; !done;) {
-    {
-      const py::gil_scoped_release unlocked;
-      done = result.wait_for(patience) == std::future_status::ready;
-    }
+    done = result.wait_for(patience) == std::future_status::ready;
     if (raised) continue;
     try {
+      const Locked locked;
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       meanwhile();
     } catch (...) {

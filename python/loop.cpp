@@ -9,6 +9,7 @@
 #include "ensonify/python/made.hpp"
 #include "ensonify/python/per_process.hpp"
 #include "ensonify/python/poses.hpp"
+#include "ensonify/python/unlocked.hpp"
 
 namespace ensonify::python {
 namespace {
@@ -49,7 +50,7 @@ class PyLoop {
     const Work work(busy_);
     if (looked_) throw std::runtime_error("the vehicle has looked from here: call move() before the next look()");
     {
-      const py::gil_scoped_release unlocked;
+      const Unlocked unlocked;
       world.look();
     }
     looked_ = true;
@@ -77,20 +78,20 @@ class PyLoop {
     ExploreHooks hooks;
     if (!guest.is_none()) {
       hooks.guest = [&](const ExploreMoment& moment) {
-        const py::gil_scoped_acquire locked;
+        const Locked locked;
         const LentGrid lent(moment.grid);
         return reply_from(guest(py::cast(look_at(moment, slice_of(moment.grid), lent))));
       };
     }
     hooks.after_step = [&](const ExploreMoment&, const Slice&, const std::vector<ExploreStep>& so_far) {
-      const py::gil_scoped_acquire locked;
+      const Locked locked;
       if (PyErr_CheckSignals() != 0) throw py::error_already_set();
       if (after_step.is_none()) return true;
       const py::object answer = after_step(so_far.back().step, scores_of(so_far.back()));
       return answer.is_none() || answer.cast<bool>();
     };
     const Simulator& simulator = ready();
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     ExploreRun run = explore(simulator, site_, vehicle_, settings, hooks);
     nlohmann::json summary = summary_of(run, site_, vehicle_);
     return std::make_unique<PyRun>(PyRun{std::move(run), std::move(summary)});
@@ -157,8 +158,16 @@ class PyLoop {
         reply.wanted = planar_from(value, "wanted");
       } else if (name == "map") {
         const Slice like{site_.truth.frame, std::vector<ColumnState>(site_.truth.columns.size(), ColumnState::unknown)};
-        reply.map = columns_of(value.cast<const LogOddsMap&>(), like, site_.map_frame);
+        if (!py::isinstance<LogOddsMap>(value)) {
+          throw py::type_error(fmt::format("the guest's map must be an ensonify.Map, not {}", type_name(value)));
+        }
+        const auto& map = value.cast<const LogOddsMap&>();
+        if (!is_finite(map)) throw DataError("the guest's map holds NaN or infinity; unknown cells hold 0");
+        reply.map = columns_of(map, like, site_.map_frame);
       } else if (name == "done") {
+        if (!py::isinstance<py::bool_>(value)) {
+          throw py::type_error(fmt::format("the guest's done must be a bool, not {}", type_name(value)));
+        }
         reply.done = value.cast<bool>();
       } else {
         throw ConfigError(fmt::format("the guest's answer has the key '{}', which is none of wanted, map, done", name));
@@ -185,16 +194,19 @@ std::unique_ptr<PyLoop> make_loop(const py::object& scene, const py::object& son
                                   const std::string& filter, const std::string& model, double threshold, double p_free,
                                   double p_occupied, double range_max_m, std::optional<double> resolution_m,
                                   const py::object& start, double radius_m, double height_m, double margin_m,
-                                  double speed_mps, double turn_rate_degps, double ping_rate_hz, double drift_m,
-                                  int steps, const std::string& isa) {
+                                  double speed_mps, double turn_rate_degps, double ping_rate_hz,
+                                  std::optional<double> known_free_m, double drift_m, int steps,
+                                  const std::string& isa) {
   for (const double v : {range_max_m, radius_m, height_m, speed_mps, turn_rate_degps, ping_rate_hz}) {
     if (!(v > 0 && std::isfinite(v))) {
       throw py::value_error(
           "range_max_m, radius_m, height_m, speed_mps, turn_rate_degps and ping_rate_hz must be above 0");
     }
   }
-  if (!(margin_m >= 0 && drift_m >= 0 && std::isfinite(margin_m + drift_m)) || steps < 1) {
-    throw py::value_error("margin_m and drift_m must not be negative, steps at least 1");
+  if (!(margin_m >= 0 && drift_m >= 0 && known_free_m.value_or(0) >= 0 &&
+        std::isfinite(margin_m + drift_m + known_free_m.value_or(0))) ||
+      steps < 1) {
+    throw py::value_error("margin_m, known_free_m and drift_m must not be negative, steps at least 1");
   }
   ExploreChoice choice;
   choice.filter = filter;
@@ -205,6 +217,7 @@ std::unique_ptr<PyLoop> make_loop(const py::object& scene, const py::object& son
   choice.steps = steps;
   SiteRequest request;
   request.resolution_m = resolution_m;
+  request.known_free_m = known_free_m;
   if (!start.is_none()) request.start = pose_from(start, "start");
   Vehicle vehicle{radius_m, height_m, margin_m, {speed_mps, radians(turn_rate_degps), ping_rate_hz}};
   RangeWindow window;
@@ -215,7 +228,7 @@ std::unique_ptr<PyLoop> make_loop(const py::object& scene, const py::object& son
   if (drift_m > 0) drift = Drift{drift_m, 1200};
   auto place = made<std::shared_ptr<Scene>>(scene);
   auto profile = made<NoiseProfile>(noise);
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   return std::make_unique<PyLoop>(std::move(place), model_of_sonar, std::move(profile), choice, vehicle, request, drift,
                                   isa);
 }
@@ -237,8 +250,8 @@ void bind_loop(py::module_& m) {
            py::arg("resolution_m") = py::none(), py::arg("start") = py::none(), py::arg("radius_m") = vehicle.radius_m,
            py::arg("height_m") = vehicle.height_m, py::arg("margin_m") = vehicle.margin_m,
            py::arg("speed_mps") = vehicle.limits.speed_mps, py::arg("turn_rate_degps") = 30,
-           py::arg("ping_rate_hz") = vehicle.limits.ping_rate_hz, py::arg("drift_m") = 0,
-           py::arg("steps") = choice.steps, py::arg("isa") = default_isa,
+           py::arg("ping_rate_hz") = vehicle.limits.ping_rate_hz, py::arg("known_free_m") = py::none(),
+           py::arg("drift_m") = 0, py::arg("steps") = choice.steps, py::arg("isa") = default_isa,
            "As the options of `ensonify explore` (docs/explore.md); range_max_m counts where `sonar` is no Sonar.\n"
            "Raises ConfigError, ValueError.")
       .def("reset", &PyLoop::reset, py::arg("seed") = 0, "Back to the start, with an empty map.")

@@ -9,6 +9,7 @@
 #include "ensonify/mapping/map_conversion.hpp"
 #include "ensonify/python/arrays.hpp"
 #include "ensonify/python/poses.hpp"
+#include "ensonify/python/unlocked.hpp"
 #include "ensonify/sensor_models/sonar_model.hpp"
 #include "ensonify/sim/voxelize.hpp"
 
@@ -52,7 +53,7 @@ void add(Mapper& mapper, const py::object& image, const SonarModel& sonar, const
   PosedImage ping{grey_from(image, "image").grey, sonar.geometry, pose_from(pose), {}};
   if (!elevation_rad.is_none())
     ping.elevation_rad = image_from(require_array<float>(elevation_rad, "elevation_rad", 2));
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   const std::lock_guard alone(mapper.mutex);
   integrate_ping(ping, mapper.threshold, mapper.model, mapper.grid, mapper.scratch);
 }
@@ -67,7 +68,7 @@ std::size_t add_scan(Mapper& mapper, const py::object& origin_m, const py::objec
   options.rule = exact ? LineRule::exact_every_ray : LineRule::bresenham_once_an_end;
   if (max_range_m) options.max_range_m = *max_range_m;
   options.step = step_of(mapper.model);
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   const std::lock_guard alone(mapper.mutex);
   return insert_scan(scan, options, mapper.grid, mapper.scan_scratch);
 }
@@ -93,7 +94,7 @@ void bind_mapping(py::module_& m) {
       .def(
           "map",
           [](Mapper& mapper) {
-            const py::gil_scoped_release unlocked;
+            const Unlocked unlocked;
             const std::lock_guard alone(mapper.mutex);
             return std::make_unique<LogOddsMap>(dense_map(mapper.grid));
           },

@@ -12,6 +12,7 @@
 #include "ensonify/output/png.hpp"
 #include "ensonify/python/arrays.hpp"
 #include "ensonify/python/poses.hpp"
+#include "ensonify/python/unlocked.hpp"
 #include "ensonify/sensor_models/sonar_model.hpp"
 
 namespace ensonify::python {
@@ -46,13 +47,18 @@ std::unique_ptr<OccupancyGrid> make_grid(const py::object& occupancy, const py::
     if (grid->observable.size() != grid->occupancy.size()) {
       throw py::value_error("observable must have the shape of occupancy");
     }
+    if (std::ranges::any_of(grid->observable, [](std::uint8_t v) { return v > 1; })) {
+      throw py::value_error("observable must be 0 or 1");
+    }
   }
   return grid;
 }
 
 std::unique_ptr<LogOddsMap> make_map(const py::object& log_odds, const py::object& origin_m, double resolution_m) {
   const auto cells = require_array<float>(log_odds, "log_odds", 3);
-  return std::make_unique<LogOddsMap>(LogOddsMap{frame_for(cells, origin_m, resolution_m), cells_from(cells)});
+  auto map = std::make_unique<LogOddsMap>(LogOddsMap{frame_for(cells, origin_m, resolution_m), cells_from(cells)});
+  if (!is_finite(*map)) throw py::value_error("log_odds must be finite; unknown cells hold 0");
+  return map;
 }
 
 py::array origin_of(const GridFrame& frame) { return py::array_t<double>(3, frame.origin_m.data()); }
@@ -73,6 +79,7 @@ void save_png(const std::filesystem::path& path, const py::object& image) {
   std::vector<std::uint8_t> bytes;
   if (py::isinstance<py::array>(image) && py::reinterpret_borrow<py::array>(image).ndim() == 3) {
     const auto colour = require_array<std::uint8_t>(image, "image", 3);
+    if (colour.size() == 0) throw py::value_error("an image needs pixels");
     if (colour.shape(2) != 3) throw py::value_error("a colour image must have the shape [height, width, 3]");
     Image2<Rgb> picture(static_cast<int>(colour.shape(0)), static_cast<int>(colour.shape(1)));
     std::copy_n(colour.data(), colour.size(), reinterpret_cast<std::uint8_t*>(picture.pixels().data()));
@@ -147,7 +154,7 @@ void bind_output(py::module_& m) {
           "save",
           [](const OccupancyGrid& g, const std::filesystem::path& path, std::optional<double> slice_z_m,
              bool unobserved_is_unknown) {
-            const py::gil_scoped_release unlocked;
+            const Unlocked unlocked;
             write_grid(g, path, {slice_z_m, unobserved_is_unknown});
           },
           py::arg("path"), py::kw_only(), py::arg("slice_z_m") = py::none(), py::arg("unobserved_is_unknown") = false,
@@ -155,7 +162,7 @@ void bind_output(py::module_& m) {
       .def_static(
           "load",
           [](const std::filesystem::path& path) {
-            const py::gil_scoped_release unlocked;
+            const Unlocked unlocked;
             return std::make_unique<OccupancyGrid>(read_grid(path));
           },
           py::arg("path"), "From .npz. Raises DataError for a broken file.");
@@ -175,7 +182,7 @@ void bind_output(py::module_& m) {
       .def(
           "save",
           [](const LogOddsMap& g, const std::filesystem::path& path, std::optional<double> slice_z_m) {
-            const py::gil_scoped_release unlocked;
+            const Unlocked unlocked;
             write_map(g, path, slice_z_m);
           },
           py::arg("path"), py::kw_only(), py::arg("slice_z_m") = py::none(),
@@ -183,7 +190,7 @@ void bind_output(py::module_& m) {
       .def_static(
           "load",
           [](const std::filesystem::path& path) {
-            const py::gil_scoped_release unlocked;
+            const Unlocked unlocked;
             return std::make_unique<LogOddsMap>(read_map(path));
           },
           py::arg("path"), "From .npz. Raises DataError for a broken file.");

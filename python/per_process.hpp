@@ -6,6 +6,7 @@
 #include <mutex>
 
 #include "ensonify/python/bindings.hpp"
+#include "ensonify/python/unlocked.hpp"
 
 namespace ensonify::python {
 
@@ -24,7 +25,7 @@ class PerProcess {
   const T& get(const Make& make) {
     abandon_if_inherited();
     const std::shared_ptr<State> state = state_;
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     std::call_once(state->made, [&] { state->value = make(); });
     return *state->value;
   }

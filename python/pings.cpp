@@ -2,13 +2,17 @@
 
 #include <fmt/format.h>
 
+#include <span>
+
 #include "ensonify/generators/simulator.hpp"
 #include "ensonify/python/arrays.hpp"
 #include "ensonify/python/made.hpp"
 #include "ensonify/python/per_process.hpp"
 #include "ensonify/python/poses.hpp"
 #include "ensonify/python/sources.hpp"
+#include "ensonify/python/unlocked.hpp"
 #include "ensonify/sensor_models/receive_chain.hpp"
+#include "ensonify/sim/observe.hpp"
 
 namespace ensonify::python {
 namespace {
@@ -31,7 +35,7 @@ class PySimulator {
     PingRequest request{pose_from(pose), {}, ping_keys(seed, frame), truth};
     if (!velocity.is_none()) request.motion = twist_from(velocity);
     const Simulator& simulator = ready();
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     SimulatedPing made = simulator.ping(request);
     auto result = std::make_unique<PyPing>();
     result->sonar = sonar_;
@@ -50,7 +54,10 @@ class PySimulator {
 
  private:
   static Twist twist_from(const py::handle& velocity) {
-    const auto six = velocity.cast<std::vector<double>>();
+    using Row = py::array_t<double, py::array::c_style | py::array::forcecast>;
+    const Row row = Row::ensure(velocity);
+    if (!row) PyErr_Clear();
+    const std::span<const double> six(row ? row.data() : nullptr, row && row.ndim() == 1 ? row.size() : 0);
     constexpr double fastest = 180;
     if (six.size() != 6 || !std::ranges::all_of(six, [](double v) { return std::abs(v) <= fastest; })) {
       throw py::value_error(
@@ -133,6 +140,16 @@ void bind_ping(py::module_& m) {
       .def_property_readonly(
           "pose", [](const PyPing& p) { return matrix_of(p.T_world_sonar); }, "T_world_sonar, float64 [4, 4].")
       .def_readonly("sonar", &PyPing::sonar)
+      .def(
+          "mark_observed",
+          [](const PyPing& p, OccupancyGrid& grid) {
+            grid.observable.resize(grid.occupancy.size());
+            mark_observed(p.truth, p.sonar.geometry, p.T_world_sonar, grid);
+          },
+          py::arg("grid"),
+          "Sets `observable` of a Grid to 1 in the cells that this ping sees: free ones within the nominal frustum "
+          "and\n"
+          "before the first surface, and surfaces that a ray meets. Clears none; in one thread at a time.")
       .def_property_readonly(
           "sampled", [](const PyPing& p) { return dict_of(p.sampled); }, "Every number that was drawn.")
       .def("__repr__", [](const PyPing& p) {

@@ -9,6 +9,7 @@
 #include "ensonify/python/per_process.hpp"
 #include "ensonify/python/pings.hpp"
 #include "ensonify/python/sources.hpp"
+#include "ensonify/python/unlocked.hpp"
 
 namespace ensonify::python {
 namespace {
@@ -34,7 +35,7 @@ class PyRecipe {
       throw py::index_error(fmt::format("the recipe has frames 0 to {}", recipe_.frames() - 1));
     }
     const FrameMaker& maker = ready();
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return py_frame(maker, maker.make(index));
   }
 
@@ -45,7 +46,7 @@ class PyRecipe {
     RandomKey frame = world.child("stream");
     for (const std::uint64_t part : address) frame = frame.child(part);
     const FrameMaker& maker = ready();
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     return py_frame(maker, maker.draw(at, world, frame));
   }
 

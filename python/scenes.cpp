@@ -5,6 +5,7 @@
 #include "ensonify/python/arrays.hpp"
 #include "ensonify/python/poses.hpp"
 #include "ensonify/python/sources.hpp"
+#include "ensonify/python/unlocked.hpp"
 #include "ensonify/scenes/scene.hpp"
 #include "ensonify/scenes/scene_export.hpp"
 #include "ensonify/scenes/water.hpp"
@@ -16,7 +17,7 @@ std::shared_ptr<Scene> make_scene(const py::object& source, std::uint64_t layout
   const ConfigSource from = source_from(source, "scene");
   auto scene = std::make_shared<Scene>();
   {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     *scene = open_scene(from, layout);
   }
   for (const std::string& warning : scene->warnings) {
@@ -42,7 +43,7 @@ std::size_t triangles(const Scene& scene) {
 }
 
 void save(const Scene& scene, const std::filesystem::path& path, bool with_surface) {
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   write_file(path, export_scene(scene, path.extension().string(), with_surface));
 }
 

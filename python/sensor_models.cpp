@@ -13,7 +13,8 @@ void bind_sensor_models(py::module_& m) {
       .def(py::init([](const py::object& source, std::optional<double> range_min_m, std::optional<double> range_max_m,
                        std::optional<int> range_bins) {
              for (const auto& range : {range_min_m, range_max_m}) {
-               if (range && !(*range > 0 && *range < 1e6)) throw py::value_error("ranges must be above 0 and finite");
+               if (range && !(*range > 0 && *range < 1e6))
+                 throw py::value_error("ranges must be above 0 and below 1000000 m");
              }
              if (range_bins && (*range_bins < 0 || *range_bins > 16384)) {
                throw py::value_error("range_bins must be 1 to 16384, or 0 for the device's own");

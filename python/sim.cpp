@@ -2,6 +2,7 @@
 #include <optional>
 
 #include "ensonify/python/arrays.hpp"
+#include "ensonify/python/unlocked.hpp"
 #include "ensonify/sim/scene_view.hpp"
 #include "ensonify/sim/voxelize.hpp"
 
@@ -9,7 +10,7 @@ namespace ensonify::python {
 namespace {
 
 std::unique_ptr<OccupancyGrid> truth_of(const Scene& scene, std::optional<double> resolution_m) {
-  const py::gil_scoped_release unlocked;
+  const Unlocked unlocked;
   return std::make_unique<OccupancyGrid>(voxelize(scene, resolution_m.value_or(scene.grid_resolution_m)).grid);
 }
 
@@ -17,6 +18,9 @@ py::array picture_of(const Scene& scene, const std::string& view, int width, int
                      double elevation_deg) {
   if (width < 1 || height < 1 || width > 16384 || height > 16384) {
     throw py::value_error("width and height must be 1 to 16384 pixels");
+  }
+  if (!std::isfinite(azimuth_deg) || !std::isfinite(elevation_deg)) {
+    throw py::value_error("azimuth_deg and elevation_deg must be finite");
   }
   Camera camera;
   if (view == "plan") {
@@ -30,7 +34,7 @@ py::array picture_of(const Scene& scene, const std::string& view, int width, int
   }
   Image2<Rgb> picture;
   {
-    const py::gil_scoped_release unlocked;
+    const Unlocked unlocked;
     picture = draw_scene(scene, camera, width, height);
   }
   static_assert(sizeof(Rgb) == 3);

@@ -29,7 +29,8 @@ LAYERS = IMAGES + ("raw_level", "clean_level", "direct", "multipath", "sidelobe"
                    "elevation_max", "incidence", "instance")
 
 
-def _check(fields: typing.Sequence[str], known: typing.Sequence[str]) -> typing.Tuple[str, ...]:
+def _check(fields: typing.Union[str, typing.Sequence[str]], known: typing.Sequence[str]) -> typing.Tuple[str, ...]:
+    fields = (fields,) if isinstance(fields, str) else fields
     for field in fields:
         if field not in known:
             raise ConfigError(f"field '{field}' is none of {', '.join(known)}")

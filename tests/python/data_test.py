@@ -47,6 +47,7 @@ class FromAFolder(ModuleTest):
         self.out = self.generate("set", recipe=self.recipe(train=20, test=4))
 
     def test_samples_are_the_frames(self):
+        self.assertEqual(ensonify.data.FrameDataset(self.out, "train", fields="mask").fields, ("mask",))
         frames = ensonify.data.FrameDataset(self.out, "train", fields=("raw", "mask", "labels"))
         dataset = ensonify.open_dataset(self.out)
         self.assertEqual(len(frames), 20)

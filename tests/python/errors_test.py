@@ -36,6 +36,7 @@ class Wrong(ModuleTest):
         self.refuse(ValueError, "not finite", lambda: ensonify.pose(0, float("nan"), 0))
         self.refuse(ValueError, "100000", lambda: ensonify.pose(1e9, 0, 0))
         self.refuse(TypeError, "incompatible", lambda: ensonify.pose(0, 0, 0, 10))
+        self.refuse(TypeError, "4 x 4", lambda: ping(POSE.astype(complex)))
         self.assertEqual(ping(POSE.tolist()).raw.tobytes(), ping(numpy.asfortranarray(POSE)).raw.tobytes())
 
     def test_other_arguments_of_a_ping(self):
@@ -45,6 +46,7 @@ class Wrong(ModuleTest):
         self.refuse(ValueError, "none beyond 180", lambda: ping(POSE, velocity=(500, 0, 0, 0, 0, 0)))
         self.refuse(ValueError, "vx, vy", lambda: ping(POSE, velocity=(1, 2, 3)))
         self.refuse(ValueError, "none beyond 180", lambda: ping(POSE, velocity=[float("nan")] * 6))
+        self.refuse(ValueError, "vx, vy", lambda: ping(POSE, velocity="abc"))
         self.refuse(ValueError, "1 to 255", lambda: self.simulator(mask_threshold=0))
         self.refuse(ensonify.ConfigError, "(?i)isa|instruction", lambda: self.simulator(isa="mmx").ping(POSE))
 
@@ -60,6 +62,14 @@ class Wrong(ModuleTest):
             self.refuse(ValueError, "C-contiguous; numpy.ascontiguousarray", lambda: function(GREY[::2]))
             self.refuse(ValueError, "C-contiguous", lambda: function(GREY.T))
         self.refuse(ensonify.DataError, "finite", lambda: ensonify.Filter("lee")(numpy.full((8, 8), numpy.nan, "f4")))
+        nan = numpy.full(GREY.shape, numpy.nan, "f4")
+        self.refuse(ValueError, "finite", lambda: ensonify.score_image(nan, GREY))
+        self.refuse(ValueError, "finite", lambda: ensonify.score_image(GREY, nan))
+        self.refuse(ValueError, "needs pixels", lambda: ensonify.score_image(GREY[:0].copy(), GREY[:0].copy()))
+        self.refuse(ValueError, "needs pixels", lambda: ensonify.save_png(self.folder / "a.png", GREY[:0].copy()))
+        for angle in (numpy.nan, numpy.inf):
+            self.refuse(ValueError, "finite", lambda angle=angle: ensonify.draw_scene(self.scene(), azimuth_deg=angle))
+            self.refuse(ValueError, "finite", lambda angle=angle: ensonify.draw_scene(self.scene(), elevation_deg=angle))
         self.refuse(ValueError, "one size", lambda: ensonify.score_mask(GREY, GREY[:8]))
         self.refuse(ensonify.DataError, "16", lambda: ensonify.Mapper([[-1, -1, -1], [1, 1, 1]], 0.1).add(GREY, self.sonar(), POSE))
         self.refuse(ValueError, "128 bins x 48 beams", lambda: ensonify.fan_view(GREY, self.sonar()))
@@ -80,9 +90,14 @@ class Wrong(ModuleTest):
                 (ValueError, "contiguous", (cells[:, ::2], [0, 0, 0], 0.1)), (ValueError, "three finite", (cells, [0, 0], 0.1)),
                 (ValueError, "three finite", (cells, [0, 0, numpy.inf], 0.1)), (ValueError, "above 0", (cells, [0, 0, 0], 0)),
                 (ValueError, "above 0", (cells, [0, 0, 0], numpy.nan)), (ValueError, "0 .free., 1", (cells + 3, [0, 0, 0], 0.1)),
-                (ValueError, "shape of occupancy", (cells, [0, 0, 0], 0.1, cells[:1].copy())), (ValueError, "needs cells", (cells[:0].copy(), [0, 0, 0], 0.1))]:
+                (ValueError, "observable must be 0 or 1", (cells, [0, 0, 0], 0.1, cells + 9)), (ValueError, "shape of occupancy", (cells, [0, 0, 0], 0.1, cells[:1].copy())), (ValueError, "needs cells", (cells[:0].copy(), [0, 0, 0], 0.1))]:
             with self.subTest(fragment):
                 self.refuse(kind, fragment, lambda a=arguments: ensonify.Grid(*a))
+        for value in (numpy.nan, numpy.inf, -numpy.inf):
+            self.refuse(ValueError, "must be finite", lambda v=value: ensonify.Map(numpy.full((3, 4, 5), v, "f4"), [0, 0, 0], 0.1))
+        map = ensonify.Map(numpy.zeros((3, 4, 5), "f4"), [0, 0, 0], 0.1)
+        map.log_odds[0, 0, 0] = numpy.nan
+        self.refuse(ensonify.DataError, "NaN or infinity", lambda: map.save(self.folder / "a.npz"))
         grid = ensonify.Grid(cells, [0, 0, 0], 0.1)
         self.refuse(ensonify.ConfigError, "extension|format", lambda: grid.save(self.folder / "a.xyz"))
         self.refuse(ensonify.DataError, "no such file", lambda: ensonify.Grid.load(self.folder / "none.npz"))
@@ -112,8 +127,8 @@ class Wrong(ModuleTest):
             for make in (ensonify.Scene, ensonify.Sonar, ensonify.Noise, ensonify.Recipe):
                 with self.subTest(repr(source), make=make.__name__):
                     self.refuse(TypeError, "name, a path or a dict", lambda m=make, s=source: m(s))
-        self.refuse(ValueError, "(?i)json|float", lambda: ensonify.Noise({"name": float("nan")}))
-        self.refuse(TypeError, "(?i)json|serial", lambda: ensonify.Noise({"name": object()}))
+        self.refuse(ensonify.ConfigError, "noise: must hold finite numbers", lambda: ensonify.Noise({"name": float("nan")}))
+        self.refuse(TypeError, "noise holds a object", lambda: ensonify.Noise({"name": object()}))
         self.refuse(TypeError, "parameters go with", lambda: ensonify.Filter([{"method": "lee"}, {"method": "unsharp"}], window=5))
 
     def test_places_on_the_disk(self):

@@ -55,7 +55,8 @@ class Loop(ModuleTest):
         for kind, fragment, guest in [
                 (ZeroDivisionError, "", lambda look: 1 / 0), (TypeError, "None or a dict", lambda look: 5),
                 (ensonify.ConfigError, "'wnted'", lambda look: {"wnted": 1}), (ValueError, "three finite", lambda look: {"wanted": (1, 2)}),
-                (ValueError, "three finite", lambda look: {"wanted": (1, 2, math.nan)}), (RuntimeError, "(?i)cast", lambda look: {"map": 5})]:
+                (ValueError, "three finite", lambda look: {"wanted": (1, 2, math.nan)}), (TypeError, "ensonify.Map, not int", lambda look: {"map": 5}),
+                (TypeError, "bool, not str", lambda look: {"done": "no"})]:
             with self.subTest(fragment), self.assertRaisesRegex(kind, fragment):
                 loop.explore(guest, steps=3)
         self.assertEqual(loop.explore(steps=3, after_step=lambda step, scores: step < 1).end, "stopped")
@@ -131,10 +132,20 @@ class Loop(ModuleTest):
         with self.assertRaisesRegex(RuntimeError, "reset"):
             loop.look()
 
+    def test_a_sonar_that_looks_straight_down_does_so(self):
+        for roll_deg, pitch_deg in [(0, 90), (20, 90), (10, -90), (0, 0)]:
+            start = ensonify.pose(0, 1.3, -1.7, roll_deg=roll_deg, pitch_deg=pitch_deg, yaw_deg=30)
+            loop = ensonify.ClosedLoop("test_tank", start=start, noise="none", range_max_m=6)
+            loop.reset()
+            numpy.testing.assert_allclose(loop.look().pose, start, atol=2e-6)
+            turned = ensonify.pose(0, 1.3, -1.7, **dict(zip(("roll_deg", "pitch_deg", "yaw_deg"), ensonify.roll_pitch_yaw_deg(start))))
+            numpy.testing.assert_allclose(turned, start, atol=2e-6)
+
     def test_arguments(self):
         for kind, options in [(ensonify.ConfigError, {"model": "oracle"}), (ensonify.ConfigError, {"filter": "leee"}), (ValueError, {"radius_m": 0}),
                               (ValueError, {"speed_mps": math.nan}), (ValueError, {"steps": 0}), (ValueError, {"start": numpy.zeros((4, 4))}),
-                              (ValueError, {"drift_m": -1}), (TypeError, {"sonar": 5})]:
+                              (ValueError, {"drift_m": -1}), (ValueError, {"known_free_m": -1}),
+                              (ensonify.ConfigError, {"start": ensonify.pose(50, 0, -1.5)}), (TypeError, {"sonar": 5})]:
             with self.subTest(options), self.assertRaises(kind):
                 ensonify.ClosedLoop("test_tank", **options).reset()
 

@@ -123,6 +123,17 @@ class Grids(ModuleTest):
         self.assertGreater(numpy.count_nonzero(ours.log_odds > 0), 10)
         self.assertSameBits(dataset.grid(dataset.places["test"][0]).occupancy, ensonify.voxelize(self.scene(2)).occupancy)
 
+    def test_what_pings_see_is_what_the_set_says_they_see(self):
+        dataset = ensonify.open_dataset(self.generate("set", recipe=self.recipe(train=2, test=6)))
+        recipe = ensonify.Recipe(self.folder / "small.yaml")
+        truth = ensonify.voxelize(self.scene(2))
+        self.assertIsNone(truth.observable)
+        for index in range(8):
+            frame = recipe.make_frame(index)
+            if frame.split == "test":
+                frame.mark_observed(truth)
+        self.assertSameBits(truth.observable, dataset.grid(dataset.places["test"][0]).observable)
+
     def test_a_scan_marks_its_ends_and_frees_its_ways(self):
         mapper = ensonify.Mapper([[0, 0, 0], [1, 1, 1]], 0.1, p_free=0.4, p_occupied=0.7)
         self.assertEqual(mapper.add_scan([0.05, 0.05, 0.05], numpy.array([[0.55, 0.05, 0.05]])), 1)

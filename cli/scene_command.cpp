@@ -50,7 +50,8 @@ void check(const std::string& path_or_name, std::uint64_t layout) {
     if (!instance.obstacle) continue;
     const VoxelReport& report = truth.reports[at++];
     open += !report.watertight;
-    if (!report.watertight) fmt::print("  {}: {}\n", instance.name, report.describe());
+    if (!report.watertight || report.inside_out || report.unlike_edges > 0)
+      fmt::print("  {}: {}\n", instance.name, report.describe());
   }
   if (open == 0 && at > 0) fmt::print("  {}\n", at == 1 ? "watertight" : "all watertight");
   warn_of_void(scene, truth);

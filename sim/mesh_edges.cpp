@@ -40,19 +40,19 @@ EdgeCount count_edges(const TriangleMesh& mesh) {
   const auto for_each_edge = [&](auto&& visit) {
     for (const auto& t : mesh.triangles) {
       for (int i = 0; i < 3; ++i) {
-        const auto [low, high] = std::minmax({vertex[t[i]], vertex[t[(i + 1) % 3]]});
-        if (low != high) visit(low, high);
+        const std::uint32_t from = vertex[t[i]], to = vertex[t[(i + 1) % 3]];
+        if (from != to) visit(std::min(from, to), std::uint64_t{std::max(from, to)} << 1 | (from < to ? 1 : 0));
       }
     }
   };
 
-  // Buckets by the lower end, filled in two passes: no sort over all edges.
+  // Buckets by the lower end, filled in two passes: no sort over all edges. In them the higher end and the direction.
   std::vector<std::size_t> end(mesh.vertices_m.size() + 1, 0);
-  for_each_edge([&](std::uint32_t low, std::uint32_t) { ++end[low]; });
+  for_each_edge([&](std::uint32_t low, std::uint64_t) { ++end[low]; });
   std::size_t total = 0;
   for (std::size_t& e : end) total = std::exchange(e, total) + total;
-  std::vector<std::uint32_t> other_end(total);
-  for_each_edge([&](std::uint32_t low, std::uint32_t high) { other_end[end[low]++] = high; });
+  std::vector<std::uint64_t> other_end(total);
+  for_each_edge([&](std::uint32_t low, std::uint64_t high) { other_end[end[low]++] = high; });
 
   EdgeCount count;
   std::size_t begin = 0;
@@ -61,11 +61,12 @@ EdgeCount count_edges(const TriangleMesh& mesh) {
     const auto bucket_end = other_end.begin() + static_cast<std::ptrdiff_t>(end[v]);
     std::sort(bucket_begin, bucket_end);
     for (auto run = bucket_begin; run != bucket_end;) {
-      const auto next = std::find_if(run, bucket_end, [&](std::uint32_t h) { return h != *run; });
+      const auto next = std::find_if(run, bucket_end, [&](std::uint64_t h) { return h >> 1 != *run >> 1; });
       const auto uses = next - run;
       count.open += uses == 1;
       count.nonmanifold += uses > 2;
       count.odd += uses % 2;
+      count.unlike += uses == 2 && run[0] == run[1];
       run = next;
     }
     begin = end[v];

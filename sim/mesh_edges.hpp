@@ -11,6 +11,7 @@ struct EdgeCount {
   std::size_t open = 0;         ///< edges of one triangle only
   std::size_t nonmanifold = 0;  ///< edges of more than two triangles
   std::size_t odd = 0;          ///< edges of an odd number of triangles: a border
+  std::size_t unlike = 0;       ///< edges of two triangles that pass them the same way: one of the two is turned over
   bool watertight() const { return odd == 0; }
 };
 

@@ -20,7 +20,9 @@ struct VoxelReport {
   std::size_t parity_disagreements = 0;  ///< cells off the surface where the votes of the three axes differ
   std::size_t surface_cells = 0;
   std::size_t interior_cells = 0;
-  bool watertight = false;  ///< no edge of an odd number of triangles
+  bool watertight = false;       ///< no edge of an odd number of triangles
+  std::size_t unlike_edges = 0;  ///< whose two triangles are turned differently
+  bool inside_out = false;       ///< watertight, all triangles turned inwards: taken as turned outwards
   SolidMethod method = SolidMethod::parity;
 
   /// One line for people, e.g. "hull: 99224 triangles, watertight, solid by parity, 206215 surface + 4098301 interior".

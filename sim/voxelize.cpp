@@ -36,6 +36,16 @@ void check_indices(const TriangleMesh& mesh) {
   }
 }
 
+/// By the sign of the enclosed volume (divergence theorem).
+bool turns_inwards(const std::vector<Vec3>& cells, const TriangleMesh& mesh) {
+  double volume = 0;
+  for (const auto& t : mesh.triangles) {
+    const Vec3 a = cells[t[0]] - cells[0];
+    volume += a.dot((cells[t[1]] - cells[0]).cross(cells[t[2]] - cells[0]));
+  }
+  return volume < 0;
+}
+
 /// The box of the grid that the points touch, one cell wider on every side; size 0 where there is none.
 std::pair<std::array<int, 3>, std::array<int, 3>> padded_box(const std::vector<Vec3>& cells, const GridFrame& frame) {
   std::array<int, 3> low{};
@@ -154,7 +164,13 @@ ObjectVoxels voxelize_object(const TriangleMesh& mesh, const Eigen::Affine3d& T_
   const auto [low, size] = padded_box(cells, frame);
   if (size[0] == 0) return object;
   object.surface = BitGrid(low, size);
-  mark_surface(cells, mesh.triangles, object.surface);
+  report.unlike_edges = edges.unlike;
+  report.inside_out = report.watertight && edges.unlike == 0 && turns_inwards(cells, mesh);
+  auto outward = mesh.triangles;
+  if (report.inside_out) {
+    for (auto& t : outward) std::swap(t[1], t[2]);
+  }
+  mark_surface(cells, outward, object.surface);
   ParityVote vote = vote_parity(cells, mesh.triangles, low, size);
   clear_rim(vote.disagreement);
   clear_rim(vote.inside);

@@ -204,6 +204,29 @@ TEST(Voxelize, BrokenMeshesAreRefused) {
   EXPECT_THROW(voxelize(scene_of({mesh}, {-1, -1, -1}, {1, 1, 1}), 0.1), DataError);
 }
 
+// A cube on borders of cells, which its faces' sides decide: 8 x 8 x 8 cells inside of a shell that is one cell thick.
+TEST(Voxelize, MeshesTurnedInsideOutHaveTheSameTruth) {
+  const TriangleMesh outward = box_mesh({-0.5, -0.5, -0.5}, {0.5, 0.5, 0.5});
+  TriangleMesh inward = outward;
+  for (auto& t : inward.triangles) std::swap(t[1], t[2]);
+  const auto voxels = [](const TriangleMesh& mesh) { return voxelize(scene_of({mesh}, {-1, -1, -1}, {1, 1, 1}), 0.1); };
+  EXPECT_EQ(voxels(inward).grid.occupancy, voxels(outward).grid.occupancy);
+  EXPECT_EQ(voxels(outward).reports[0].surface_cells, 1000u - 512u);
+  EXPECT_FALSE(voxels(outward).reports[0].inside_out);
+  EXPECT_TRUE(voxels(inward).reports[0].inside_out);
+
+  TriangleMesh half = outward;
+  std::swap(half.triangles[0][1], half.triangles[0][2]);
+  EXPECT_TRUE(voxels(half).reports[0].watertight);
+  EXPECT_EQ(voxels(half).reports[0].unlike_edges, 3u);
+  EXPECT_THAT(voxels(half).reports[0].describe(), testing::HasSubstr("turned differently"));
+
+  // A mirror turns every face over, and the placed object is what counts.
+  Scene mirrored = scene_of({outward}, {-1, -1, -1}, {1, 1, 1});
+  mirrored.instances[0].T_world_object = Eigen::Affine3d(Eigen::Scaling(-1.0, 1.0, 1.0));
+  EXPECT_EQ(voxelize(mirrored, 0.1).grid.occupancy, voxels(outward).grid.occupancy);
+}
+
 TEST(MeshEdges, RepeatedVerticesCountAsOne) {
   TriangleMesh mesh = box_mesh({0, 0, 0}, {1, 1, 1});
   for (auto& t : mesh.triangles) {

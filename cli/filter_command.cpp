@@ -7,6 +7,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -90,7 +91,12 @@ FilterChain chosen_chain(const Arguments& a) {
     if (const auto found = preset.methods.find(chain.name); found != preset.methods.end())
       chain.steps[0] = found->second;
   }
-  for (const std::string& setting : a.settings) assign_parameter(chain.steps[0], setting);
+  std::set<std::string> assigned;
+  for (const std::string& setting : a.settings) {
+    const std::string key = setting.substr(0, setting.find('='));
+    if (!assigned.insert(key).second) throw ConfigError(fmt::format("--set {}: is given twice; keep one", key));
+    assign_parameter(chain.steps[0], setting);
+  }
   for (const FilterStep& step : chain.steps) check_filter(step);
   return chain;
 }

@@ -100,9 +100,8 @@ void run(const Arguments& a) {
     write_file(out / "ping.json", json_text(record));
   });
 
-  if (record["nearest_surface_m"].is_null()) {
-    warn_of_silence(scene, T_world_sonar.translation(), sonar.geometry.range_min_m, sonar.geometry.range_max_m);
-  }
+  warn_of_place(scene, T_world_sonar.translation(), record["nearest_surface_m"].is_null(), sonar.geometry.range_min_m,
+                sonar.geometry.range_max_m);
   fmt::print("{} x {} pixels in {}: mask {:.1f} %, nearest surface {} m\n", images.raw.grey.rows(),
              images.raw.grey.columns(), a.out, 100.0 * record["mask_share"].get<double>(),
              record["nearest_surface_m"].is_null() ? "none"
@@ -149,7 +148,7 @@ void add_ping(CLI::App& app) {
   command->footer(
       "Example:\n"
       "  ensonify ping test_tank --sonar oculus_m1200d_hf --pose \"1.0 0 -1.5 0 10 0\" --out out/ping\n"
-      "  ensonify ping glider.dae --sonar oculus_m1200d_hf --pose \"-3 0 -50 0 0 0\" --out out/glider");
+      "  ensonify ping glider.dae --sonar oculus_m1200d_hf --pose \"-3 0 0 0 0 0\" --out out/glider");
   command->callback([a] { run(*a); });
 }
 

@@ -40,17 +40,20 @@ void check(const std::string& path_or_name) {
   const SonarModel sonar = load_sonar(path_or_name);
   const SonarGeometry& g = sonar.geometry;
   const RayFan fan(sonar);
+  const double azimuth_deg = degrees(g.beam_azimuth_rad.front() - g.beam_azimuth_rad.back());
+  const double arc_deg = degrees(2.0 * fan.rows[0].elevation_rad.back());
   fmt::print(
       "{}: {}\n"
       "  {:.0f} kHz, {:.0f} kHz bandwidth, source level {} dB, {} Hz\n"
       "  {} beams from {:.2f} to {:.2f} deg, {:.2f} deg wide; {:.1f} deg in elevation\n"
       "  {} bins of {:.2f} mm, {} to {:.3f} m (instrument: {} to {} m)\n"
-      "  {} x {} rays over {:.1f} deg of elevation\n",
+      "  {} x {} rays over {:.1f} deg of elevation, {:.2f} x {:.2f} deg apart\n",
       sonar.name, sonar.title, sonar.frequency_hz / 1e3, sonar.bandwidth_hz / 1e3, sonar.source_level_db,
       sonar.ping_rate_hz, g.beams(), degrees(g.beam_azimuth_rad.front()), degrees(g.beam_azimuth_rad.back()),
       degrees(sonar.receive_azimuth.width_rad()), degrees(g.elevation_fov_rad), g.range_bins, 1e3 * g.bin_size_m(),
       g.range_min_m, g.range_max_m, sonar.instrument_range_min_m, sonar.instrument_range_max_m, fan.columns.size(),
-      fan.elevation_rays, degrees(2.0 * fan.rows[0].elevation_rad.back()));
+      fan.elevation_rays, arc_deg, azimuth_deg / (static_cast<double>(fan.columns.size()) - 1),
+      arc_deg / (fan.elevation_rays - 1));
   const double gap = widest_gap(g.beam_azimuth_rad, sonar.receive_azimuth.width_rad()).widths;
   if (gap > told_gap_widths)
     fmt::print("  beams up to {:.2f} widths apart: gaps between them are heard at full gain\n", gap);

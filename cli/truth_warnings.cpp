@@ -77,6 +77,7 @@ void warn_of_void(const Scene& scene, const VoxelTruth& truth) {
     bool below_top = false;  // what stands out of the water is no mistake
   };
   const Objects objects(scene);
+  const bool afloat = std::ranges::any_of(scene.instances, [](const Instance& i) { return !i.obstacle; });
   std::map<std::string, Found> found;
   std::size_t at = 0;
   for (const Instance& instance : scene.instances) {
@@ -85,7 +86,7 @@ void warn_of_void(const Scene& scene, const VoxelTruth& truth) {
     Found& object = found[objects.of(instance)];
     const std::size_t cells = report.surface_cells + report.interior_cells;
     object.cells += cells;
-    if (cells == 0) object.below_top |= lowest_z_m(scene, instance) < scene.bounds_m.max().z();
+    if (cells == 0) object.below_top |= !afloat || lowest_z_m(scene, instance) < scene.bounds_m.max().z();
   }
   if (found.empty()) warn(scene, "nothing in it is an obstacle, so that all of the truth is free");
   for (const auto& [name, object] : found) {
@@ -99,15 +100,19 @@ void warn_of_void(const Scene& scene, const VoxelTruth& truth) {
   }
 }
 
-void warn_of_silence(const Scene& scene, const Vec3& sonar_m, double range_min_m, double range_max_m) {
+void warn_of_place(const Scene& scene, const Vec3& sonar_m, bool silent, double range_min_m, double range_max_m) {
+  const std::string sonar = fmt::format("the sonar at ({:.4g}, {:.4g}, {:.4g})", sonar_m.x(), sonar_m.y(), sonar_m.z());
+  const bool in_air = sonar_m.z() > 0.0 && scene.bounds_m.max().z() <= 0.0;
+  const std::string above = fmt::format("{:.4g} m above the water (z is up, 0 at the surface)", sonar_m.z());
+  if (in_air && !silent) warn(scene, fmt::format("{} is {}, and pings as if it were in it", sonar, above));
+  if (!silent) return;
   std::string where = "turn it or move it nearer";
-  if (sonar_m.z() > 0.0 && scene.bounds_m.max().z() <= 0.0) {
-    where = fmt::format("it is {:.4g} m above the water (z is up, 0 at the surface)", sonar_m.z());
+  if (in_air) {
+    where = "it is " + above;
   } else if (!scene.bounds_m.contains(sonar_m)) {
     where = fmt::format("it is outside of the scene, {}", box(scene.bounds_m));
   }
-  warn(scene, fmt::format("the sonar at ({:.4g}, {:.4g}, {:.4g}) meets no surface within {:.4g} to {:.4g} m: {}",
-                          sonar_m.x(), sonar_m.y(), sonar_m.z(), range_min_m, range_max_m, where));
+  warn(scene, fmt::format("{} meets no surface within {:.4g} to {:.4g} m: {}", sonar, range_min_m, range_max_m, where));
 }
 
 }  // namespace ensonify::cli

@@ -8,7 +8,7 @@ namespace ensonify::cli {
 /// bounds, no obstacle at all, a navigable box without room.
 void warn_of_void(const Scene& scene, const VoxelTruth& truth);
 
-/// The same of a ping that met no surface between its ranges (m): where the sonar is.
-void warn_of_silence(const Scene& scene, const Vec3& sonar_m, double range_min_m, double range_max_m);
+/// The same of a ping whose sonar is above the water, or that met no surface between its ranges (m).
+void warn_of_place(const Scene& scene, const Vec3& sonar_m, bool silent, double range_min_m, double range_max_m);
 
 }  // namespace ensonify::cli

@@ -169,6 +169,8 @@ Dataset open_dataset(const fs::path& folder) {
   dataset.folder = folder;
   const fs::path manifest = DatasetPaths{folder}.manifest();
   std::error_code error;
+  if (!fs::is_directory(folder, error))
+    throw DataError(fmt::format("{}: no dataset.json: no such folder", folder.string()));
   if (!fs::is_regular_file(manifest, error)) {
     throw DataError(fmt::format(
         "{}: no dataset.json: no dataset, or an unfinished one; run generate again to finish it", folder.string()));

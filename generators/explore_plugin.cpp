@@ -64,7 +64,8 @@ Image2<std::uint8_t> whole_levels(const Image2<float>& image) {
 
 [[noreturn]] void refuse(int step, const std::string& what, const std::string& line) {
   constexpr std::size_t shown = 120;
-  throw DataError(fmt::format("plug-in's answer to step {}: {}; it said: {}", step, what, line.substr(0, shown)));
+  throw DataError(
+      fmt::format("plug-in's answer to step {}: {}; it said: {}", step, what, one_line(line.substr(0, shown))));
 }
 
 PlanarPose pose_in(const nlohmann::json& value, int step, const std::string& line) {
@@ -92,10 +93,14 @@ GuestReply parse_reply(const std::string& line, int step, const Slice& like, con
       reply.wanted = pose_in(value, step, line);
     } else if (key == "map") {
       if (!value.is_string()) refuse(step, "map must be the path of a .npz file", line);
-      reply.map = read_guest_map(value.get<std::string>(), like, slab);
+      try {
+        reply.map = read_guest_map(value.get<std::string>(), like, slab);
+      } catch (const std::runtime_error& e) {
+        refuse(step, e.what(), line);
+      }
     } else if (key == "done") {
-      if (value != true) refuse(step, "done must be true", line);
-      reply.done = true;
+      if (!value.is_boolean()) refuse(step, "done must be true or false", line);
+      reply.done = value.get<bool>();
     } else {
       refuse(step, fmt::format("\"{}\" is no key of an answer; it {}", key, rule), line);
     }

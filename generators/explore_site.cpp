@@ -51,22 +51,27 @@ ColumnMask columns_in(const Slice& slice, const Eigen::AlignedBox3d& box, double
   return inside;
 }
 
-void check_start(const ExploreSite& site, const Vehicle& vehicle) {
+void check_start(const ExploreSite& site, const Vehicle& vehicle, const Eigen::AlignedBox3d& navigable_m) {
   const Vec3 at = site.start.translation();
   const auto place = fmt::format("start at {:.2f} {:.2f} {:.2f}", at.x(), at.y(), at.z());
   const PlanarPose start = site.planar_start();
   const double room_m = clearance_m(site.truth, start, start, std::max(vehicle.radius_m, site.known_free_m) + 0.01);
   if (std::ranges::count(site.reachable.free, 1) == 0) {
+    if (!navigable_m.contains(Vec3(at.x(), at.y(), navigable_m.center().z()))) {
+      throw ConfigError(fmt::format(
+          "{}: lies outside of the scene's navigable box, x {:.2f} to {:.2f} and y {:.2f} to {:.2f}; choose another "
+          "start",
+          place, navigable_m.min().x(), navigable_m.max().x(), navigable_m.min().y(), navigable_m.max().y()));
+    }
     throw ConfigError(
-        fmt::format("{}: must lie in the scene's navigable box, {} m off everything, but the nearest surface is at "
-                    "{:.2f} m; choose "
-                    "another --start, --depth or --radius",
+        fmt::format("{}: must be {} m off everything, but the nearest surface is at {:.2f} m; choose another start, "
+                    "depth or radius",
                     place, vehicle.radius_m, room_m));
   }
   if (room_m < site.known_free_m) {
     throw ConfigError(fmt::format(
         "{}: {:.2f} m around are taken as known to be free, since the sonar can not see them, but a surface is at "
-        "{:.2f} m; choose another --start, or a smaller --known-free or --height",
+        "{:.2f} m; choose another start, or a smaller known-free radius or height",
         place, site.known_free_m, room_m));
   }
 }
@@ -102,7 +107,7 @@ ExploreSite explore_site(const Scene& scene, const SonarModel& sonar, const Inve
       std::max(site.view.nearest_m, vehicle.radius_m + vehicle.margin_m + slab.resolution_m) + slab.resolution_m);
   site.reachable =
       reachable_slice(site.truth, site.area, site.planar_start(), vehicle.radius_m, sonar.geometry.range_max_m);
-  check_start(site, vehicle);
+  check_start(site, vehicle, scene.navigable_m);
   return site;
 }
 

@@ -13,8 +13,9 @@
 namespace ensonify {
 
 FolderLock::FolderLock(const std::filesystem::path& file) {
-  std::error_code no_throw;
-  std::filesystem::create_directories(file.parent_path(), no_throw);
+  std::error_code error;
+  std::filesystem::create_directories(file.parent_path(), error);
+  if (error) throw disk_error(file.parent_path(), error.message());
   file_ = ::open(file.c_str(), O_RDWR | O_CREAT | O_CLOEXEC | O_NOFOLLOW, 0666);
   if (file_ < 0) throw disk_error(file, std::strerror(errno));
   share();

@@ -169,8 +169,9 @@ Image2<Grey> decode_png(std::span<const std::uint8_t> bytes, const std::filesyst
   }
   if (decoded.empty()) throw DataError(fmt::format("{}: broken PNG file", name.string()));
   if (decoded.channels() != 1 || decoded.elemSize() != sizeof(Grey)) {
-    throw DataError(fmt::format("{}: must be a greyscale PNG of {} bits, not {} channels of {} bits", name.string(),
-                                8 * sizeof(Grey), decoded.channels(), 8 * decoded.elemSize1()));
+    throw DataError(fmt::format("{}: must be a greyscale PNG of {} bits, not {} of {} bits", name.string(),
+                                8 * sizeof(Grey), decoded.channels() == 1 ? "grey" : "colours",
+                                8 * decoded.elemSize1()));
   }
   Image2<Grey> image(decoded.rows, decoded.cols);
   for (int r = 0; r < decoded.rows; ++r) std::memcpy(image.row(r).data(), decoded.ptr(r), image.row(r).size_bytes());

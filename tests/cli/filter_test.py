@@ -104,6 +104,7 @@ class Images(ProgramTest):
         for words, fragments in (
                 (["wavlet", "in.npy", "o.npy"], ["no filter method 'wavlet'", "did you mean 'wavelet'?"]),
                 (["lee", "in.npy", "o.npy", "--set", "windw=5"], ["did you mean 'window'?"]),
+                (["lee", "in.npy", "o.npy", "--set", "window=5", "--set", "window=7"], ["--set window: is given twice"]),
                 (["lee", "in.npy", "o.npy", "--set", "window=4"], ["odd number from 3 to 101, not '4'"]),
                 (["lee", "in.npy", "o.npy", "--set", "window"], ["key=value"]),
                 (["anisodiff", "in.npy", "o.npy", "--set", "kappa=-3"], ["kappa must be a number from"]),

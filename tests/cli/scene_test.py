@@ -82,6 +82,9 @@ class Void(ProgramTest):
         self.check([("depth_m: 4,", "depth_m: 14,"), alone, (pose, "pose: [0, 0, -2]")],
                    ["seabed has no cell in the truth: it lies outside of bounds"])
         self.check([alone, (pose, "pose: [40, 0, -2]")], ["block has no cell in the truth"])
+        self.check([alone, (pose, "pose: [0, 0, 3]")], ["block has no cell in the truth"])
+        surface = "surface: {roughness_m: 0.03, wavelength_m: 3, spacing_m: 0.5}\n"  # out of the water is no mistake
+        self.check([alone, (pose, "pose: [0, 0, 3]"), ("seabed:", surface + "seabed:")], [])
         self.check([("length_m: {uniform: [1, 2]}", "length_m: 11"), ("width_m: 1", "width_m: 11"),
                     ("height_m: 2", "height_m: 3.9"), (SCENE[SCENE.index("waypoints"):], "")],
                    ["navigable, (-5, -5, -3.4) to (5, 5, -0.6) m, has no free cell"])
@@ -101,6 +104,8 @@ class Void(ProgramTest):
             self.assertIn(f"meets no surface within 0.1 to 1 m: {reason}", done.stderr)
         done = self.succeed("ping", "test_tank", "--sonar", "holoocean", "--pose", "1 0 -1.5 0 10 0", "--out", "p")
         self.assertEqual(done.stderr, "")
+        done = self.succeed("ping", "test_tank", "--sonar", "holoocean", "--pose", "1 0 0.5 0 45 10", "--out", "p")
+        self.assertIn("is 0.5 m above the water (z is up, 0 at the surface), and pings as if it were in it", done.stderr)
 
     def test_what_is_watertight_is_said_to_be(self):
         self.write("cube.obj", CUBE_OBJ)

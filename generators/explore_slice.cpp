@@ -25,7 +25,7 @@ GridFrame slab_of(const GridFrame& whole, double z_m, double height_m) {
   const int high = std::max(low + 1, static_cast<int>(std::ceil(top - rounding)));
   if (low < 0 || high > whole.size[2]) {
     throw ConfigError(fmt::format(
-        "a vehicle {} m high at z = {} m leaves the scene's bounds, z = {} .. {} m; choose another --depth or --height",
+        "a vehicle {} m high at z = {} m leaves the scene's bounds, z = {} .. {} m; choose another depth or height",
         height_m, z_m, whole.origin_m.z(), whole.origin_m.z() + whole.resolution_m * whole.size[2]));
   }
   GridFrame slab = whole;

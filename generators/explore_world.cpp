@@ -32,7 +32,7 @@ ExploreWorld::ExploreWorld(const Simulator& simulator, const ExploreSite& site, 
       grid_(site.map_frame, settings.limits),
       map_(slice_of(grid_)) {
   if (std::holds_alternative<Oracle>(settings.model)) {
-    throw ConfigError("the model oracle needs true elevations, which a vehicle does not have; choose another --model");
+    throw ConfigError("the model oracle needs true elevations, which a vehicle does not have; choose another model");
   }
   at_.truly = before_ = site.planar_start();
   const Eigen::Vector2d drift = drift_now_m();

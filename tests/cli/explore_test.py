@@ -99,9 +99,9 @@ class ExploreTest(ProgramTest):
             self.assertFalse((self.folder / "gate").exists())
 
     def test_what_does_not_fit_is_said_before_the_start(self):
-        for words, fragment in ((("--start", "1 2 3"), "--start"), (("--start", "0 0 -3.5 0 0 0"), "--start"),
-                                (("--start", "50 0 -2 0 0 0"), "navigable"), (("--depth", "40"), "--depth"),
-                                (("--model", "oracle"), "--model"), (("--known-free", "9"), "--known-free"),
+        for words, fragment in ((("--start", "1 2 3"), "--start"), (("--start", "0 0 -3.5 0 0 0"), "choose another start"),
+                                (("--start", "50 0 -2 0 0 0"), "outside of the scene's navigable box"), (("--depth", "40"), "another depth or height"),
+                                (("--model", "oracle"), "--model"), (("--known-free", "9"), "known-free radius"),
                                 (("--filter", "nosuch"), "nosuch"), (("--steps", "0"), "--steps")):
             self.refuse(2, [fragment], "explore", *RUN, "--out", "wrong", *words)
             self.assertFalse((self.folder / "wrong").exists(), words)

@@ -317,6 +317,7 @@ TEST(ExplorePlugin, AnswersAreRead) {
   EXPECT_EQ(reply.wanted->y_m, 2);
   EXPECT_NEAR(reply.wanted->yaw_rad, radians(90), 1e-12);
   EXPECT_TRUE(parse_reply(R"({"done": true})", 0, like, like.frame).done);
+  EXPECT_FALSE(parse_reply(R"({"done": false})", 0, like, like.frame).done);
 }
 
 TEST(ExplorePlugin, NonsenseIsRefused) {
@@ -324,9 +325,19 @@ TEST(ExplorePlugin, NonsenseIsRefused) {
   for (const char* line :
        {"", "hello", "[]", "{}", "null", "3", R"({"pose": [1, 2, 3]})", R"({"pose": [1, 2, 3, 0, 0, 1e999]})",
         R"({"pose": [1, 2, 3, 0, 0, "x"]})", R"({"pose": [1e9, 2, 3, 0, 0, 0]})", R"({"position": 1})",
-        R"({"done": false})", R"({"map": 3})", R"({"map": "/nowhere/map.npz"})"}) {
+        R"({"done": 1})", R"({"map": 3})", R"({"map": "/nowhere/map.npz"})"}) {
     EXPECT_THROW(parse_reply(line, 7, like, like.frame), DataError) << line;
   }
+  const auto said = [&](const std::string& line) -> std::string {
+    try {
+      parse_reply(line, 7, like, like.frame);
+    } catch (const DataError& e) {
+      return e.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(said("\x01\xff"), testing::HasSubstr("step 7: is no JSON; it said: \"\\u0001"));
+  EXPECT_THAT(said(R"({"map": "/nowhere/map.npz"})"), testing::HasSubstr("step 7: can not read /nowhere/map.npz"));
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "ensonify/core/random.hpp"
 #include "ensonify/output/atomic_file.hpp"
 #include "ensonify/output/grid_files.hpp"
+#include "ensonify/output/grid_npz.hpp"
 #include "ensonify/output/npz.hpp"
 
 namespace ensonify {
@@ -176,8 +177,13 @@ TEST_F(MapFiles, CutOrForeignFilesAreDataErrors) {
   EXPECT_THROW(read_map(folder / "grid.npz"), DataError);  // no log_odds
   LogOddsMap map = example_map();
   map.log_odds[7] = std::nanf("");
-  write_map(map, folder / "nan.npz");
-  EXPECT_THROW(read_map(folder / "nan.npz"), DataError);
+  EXPECT_THROW(write_map(map, folder / "nan.npz"), DataError);
+  EXPECT_FALSE(fs::exists(folder / "nan.npz"));
+  for (const float value : {std::nanf(""), HUGE_VALF, -HUGE_VALF}) {
+    map.log_odds[7] = value;
+    write_map_npz(map, folder / "foreign.npz");
+    EXPECT_THROW(read_map(folder / "foreign.npz"), DataError) << value;
+  }
   EXPECT_THROW(read_map(folder / "map.bt"), ConfigError);
 }
 

@@ -165,13 +165,22 @@ void bind_output(py::module_& m) {
             const Unlocked unlocked;
             return std::make_unique<OccupancyGrid>(read_grid(path));
           },
-          py::arg("path"), "From .npz. Raises DataError for a broken file.");
+          py::arg("path"), "From .npz. Raises DataError for a broken file.")
+      .def(py::pickle(
+          [](const py::object& self) {
+            return py::make_tuple(self.attr("occupancy"), self.attr("origin_m"), self.attr("resolution_m"),
+                                  self.attr("observable"));
+          },
+          [](const py::tuple& state) {
+            if (state.size() != 4) throw py::value_error("no pickled Grid");
+            return make_grid(state[0], state[1], state[2].cast<double>(), state[3]);
+          }));
 
   py::class_<LogOddsMap> map(m, "Map",
                              "What a mapper believes: natural log-odds in cells [z, y, x], positive = occupied.");
   add_frame(map);
   map.def(py::init(&make_map), py::arg("log_odds"), py::arg("origin_m"), py::arg("resolution_m"),
-          "Copies an array float32 [z, y, x], C-contiguous; 0 = unknown.")
+          "Copies an array float32 [z, y, x], C-contiguous; 0 = unknown. Raises ValueError for NaN and infinity.")
       .def_property_readonly(
           "log_odds",
           [](const py::object& self) {
@@ -193,7 +202,15 @@ void bind_output(py::module_& m) {
             const Unlocked unlocked;
             return std::make_unique<LogOddsMap>(read_map(path));
           },
-          py::arg("path"), "From .npz. Raises DataError for a broken file.");
+          py::arg("path"), "From .npz. Raises DataError for a broken file.")
+      .def(py::pickle(
+          [](const py::object& self) {
+            return py::make_tuple(self.attr("log_odds"), self.attr("origin_m"), self.attr("resolution_m"));
+          },
+          [](const py::tuple& state) {
+            if (state.size() != 3) throw py::value_error("no pickled Map");
+            return make_map(state[0], state[1], state[2].cast<double>());
+          }));
 
   m.def("save_png", &save_png, py::arg("path"), py::arg("image"),
         "uint8 or uint16 [height, width], or uint8 [height, width, 3]; whole or not at all.");

@@ -1,7 +1,9 @@
 #!/usr/bin/python3
 """Filters, maps, files and scores: what the program says, and what closed forms say."""
 
+import copy
 import math
+import pickle
 
 import numpy
 
@@ -103,6 +105,20 @@ class Grids(ModuleTest):
         again.log_odds[0, 0, 0] = 9
         self.assertEqual(again.log_odds[0, 0, 0], 9)
         self.assertNotEqual(first.log_odds[0, 0, 0], 9)
+
+    def test_maps_and_grids_travel_between_processes(self):
+        cells = numpy.random.default_rng(3).normal(size=(3, 4, 5)).astype(numpy.float32)
+        occupied = (cells > 0).astype(numpy.uint8)
+        for first in (ensonify.Map(cells, [1, 2, 3], 0.25), ensonify.Grid(occupied, [1, 2, 3], 0.25),
+                      ensonify.Grid(occupied, [1, 2, 3], 0.25, 1 - occupied)):
+            for again in (pickle.loads(pickle.dumps(first)), copy.deepcopy(first)):
+                self.assertEqual((again.shape, again.resolution_m, again.origin_m.tolist()), ((3, 4, 5), 0.25, [1, 2, 3]))
+                for name in ("log_odds", "occupancy", "observable"):
+                    if getattr(first, name, None) is not None:
+                        self.assertSameBits(getattr(again, name), getattr(first, name))
+            if isinstance(first, ensonify.Map):
+                again.log_odds[0, 0, 0] = 9
+                self.assertNotEqual(first.log_odds[0, 0, 0], 9)
 
     def test_a_mapper_gives_the_programs_map(self):
         out = self.generate("set", recipe=self.recipe(train=2, test=6))

@@ -21,7 +21,7 @@ json describe(const Distribution& distribution) {
 
 namespace {
 
-/// In degrees; what was given in whole parts of them reads so, and is read back to the same bits.
+/// In degrees, nine digits after the point: what was given with so many is written so, and read back to the same bits.
 double rounded_deg(double angle_rad) { return std::round(degrees(angle_rad) * 1e9) / 1e9; }
 
 /// The path under the key that the recipe has for it.
